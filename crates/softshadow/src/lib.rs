@@ -1,0 +1,1 @@
+//! Soft shadows from area lights, as numbers and as pictures

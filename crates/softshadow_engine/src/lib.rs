@@ -1,0 +1,1 @@
+//! Runs plans on wgpu: adapters, pipelines, resources, uploads, readback, timing

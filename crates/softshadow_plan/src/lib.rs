@@ -1,0 +1,1 @@
+//! How visibility is computed, as a value: textures, buffers and passes

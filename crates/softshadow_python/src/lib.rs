@@ -1,0 +1,1 @@
+//! The Python extension of softshadow: converts, detaches from the interpreter, maps errors

@@ -1,0 +1,23 @@
+//! What is lit: meshes, lights, cameras and receivers. Pure geometry in float64, no GPU and no shader.
+
+mod bvh;
+mod camera;
+mod error;
+mod frame;
+mod light;
+mod light_samples;
+mod local;
+mod mesh;
+mod receivers;
+mod scene;
+
+pub use bvh::{Bvh, BvhNode};
+pub use camera::{Camera, LocalCamera};
+pub use error::SceneError;
+pub use frame::{LocalFrame, look_at};
+pub use light::{Light, LightShape, LightTexture, LocalLight, UpAxis};
+pub use light_samples::{LightSamples, MAX_SAMPLES, SamplePattern, sample_positions, unit_square};
+pub use local::{Corner, Dropped, LocalScene, SubScene};
+pub use mesh::{MAX_TRIANGLES, Material, Mesh};
+pub use receivers::{LocalPoint, Points, Receivers};
+pub use scene::Scene;

@@ -1,0 +1,257 @@
+//! A scene as the kernels read it: local float32 triangles in a canonical order, cut into sub-scenes with a hierarchy each.
+//!
+//! Canonical means: the corners of a triangle are sorted by position, and so are the triangles. Two triangles that share an edge
+//! then evaluate it with the same operands in the same order, so that no ray slips between them whatever the compiler fuses;
+//! and the order in which a caller gives his triangles changes no bit of a result.
+
+use glam::DVec3;
+
+use crate::bvh::{Bvh, BvhNode};
+use crate::error::SceneError;
+use crate::frame::LocalFrame;
+use crate::mesh::Material;
+use crate::scene::Scene;
+
+/// A corner of a triangle as the kernels read it.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Corner {
+    /// Local float32 position.
+    pub position: [f32; 3],
+    /// Index of the triangle in [`LocalScene::triangles`], the same in all three corners.
+    pub triangle: u32,
+}
+
+/// A run of triangles with its own hierarchy, small enough for one storage binding.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SubScene {
+    /// Index of its first triangle in [`LocalScene::triangles`].
+    pub first_triangle: u32,
+    /// Corners, three a triangle.
+    pub corners: Vec<Corner>,
+    /// Hierarchy; leaves count triangles from the sub-scene's first.
+    pub nodes: Vec<BvhNode>,
+}
+
+/// What was left out of the local scene, and why it casts no shadow.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Dropped {
+    /// Triangles without area: repeated or collinear corners.
+    pub zero_area: usize,
+    /// Triangles whose corners coincide once rounded to local float32.
+    pub below_resolution: usize,
+}
+
+/// A scene in its local frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocalScene {
+    /// How world coordinates became local ones.
+    pub frame: LocalFrame,
+    /// Largest absolute local coordinate of any vertex.
+    pub extent: f32,
+    /// The triangles, cut to the size of a binding. Empty without triangles.
+    pub sub_scenes: Vec<SubScene>,
+    /// For each local triangle the caller's triangle id.
+    pub caller_ids: Vec<u32>,
+    /// For each local triangle the index of its mesh.
+    pub mesh_ids: Vec<u32>,
+    /// One material a mesh.
+    pub materials: Vec<Material>,
+    /// Triangles that were left out.
+    pub dropped: Dropped,
+}
+
+impl LocalScene {
+    /// Moves a scene to its local frame, rounds it, and builds the hierarchies.
+    ///
+    /// `frame_points` are further points that the frame should cover where the scene has no vertex at all.
+    /// `max_binding_bytes` is the largest storage binding of the host.
+    ///
+    /// # Errors
+    /// [`SceneError::NotFinite`] when a coordinate overflows float32 although it is finite in float64.
+    pub fn new(
+        scene: &Scene,
+        frame_points: Option<([f64; 3], [f64; 3])>,
+        max_binding_bytes: u64,
+    ) -> Result<Self, SceneError> {
+        let frame = LocalFrame::around(scene.bounds().or(frame_points));
+        let mut dropped = Dropped::default();
+        let mut rows: Vec<([[f32; 3]; 3], u32, u32)> = Vec::with_capacity(scene.triangle_count());
+        let mut caller_id = 0u32;
+        for (mesh_id, mesh) in scene.meshes().iter().enumerate() {
+            let local: Vec<[f32; 3]> = mesh
+                .vertices
+                .iter()
+                .enumerate()
+                .map(|(index, v)| {
+                    let rounded = frame.local_from_world(*v).as_vec3();
+                    // Adding +0 turns −0 into +0: equal positions must be equal bits.
+                    let positive_zero = rounded + glam::Vec3::ZERO;
+                    let what = || format!("mesh '{}' vertices, relative to the scene in float32,", mesh.name);
+                    positive_zero
+                        .is_finite()
+                        .then_some(positive_zero.to_array())
+                        .ok_or_else(|| SceneError::NotFinite { what: what(), index })
+                })
+                .collect::<Result<_, _>>()?;
+            for triangle in &mesh.triangles {
+                let id = caller_id;
+                caller_id += 1;
+                if is_flat(triangle.map(|v| DVec3::from(mesh.vertices[v as usize]))) {
+                    dropped.zero_area += 1;
+                    continue;
+                }
+                let mut corners = triangle.map(|v| local[v as usize]);
+                corners.sort_by(position_order);
+                if corners[0] == corners[1] || corners[1] == corners[2] {
+                    dropped.below_resolution += 1;
+                    continue;
+                }
+                rows.push((corners, id, mesh_id as u32));
+            }
+        }
+        rows.sort_by(|a, b| triangle_order(&a.0, &b.0));
+        let extent = rows.iter().flat_map(|r| r.0.as_flattened()).fold(0f32, |m, x| m.max(x.abs()));
+        let mut built = Self {
+            frame,
+            extent,
+            sub_scenes: Vec::new(),
+            caller_ids: Vec::with_capacity(rows.len()),
+            mesh_ids: Vec::with_capacity(rows.len()),
+            materials: scene.meshes().iter().map(|m| m.material).collect(),
+            dropped,
+        };
+        for chunk in rows.chunks(triangles_per_binding(max_binding_bytes)) {
+            built.append(chunk);
+        }
+        Ok(built)
+    }
+
+    /// How many triangles there are.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.caller_ids.len()
+    }
+
+    /// All triangles in order, as three positions each.
+    pub fn triangles(&self) -> impl Iterator<Item = [[f32; 3]; 3]> + '_ {
+        self.sub_scenes.iter().flat_map(|s| s.corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]].map(|c| c.position)))
+    }
+
+    fn append(&mut self, rows: &[([[f32; 3]; 3], u32, u32)]) {
+        let positions: Vec<[[f32; 3]; 3]> = rows.iter().map(|r| r.0).collect();
+        let bvh = Bvh::build(&positions);
+        let first_triangle = self.caller_ids.len() as u32;
+        let mut corners = Vec::with_capacity(rows.len() * 3);
+        for (&old, triangle) in bvh.order.iter().zip(first_triangle..) {
+            let (positions, caller_id, mesh_id) = rows[old as usize];
+            corners.extend(positions.map(|position| Corner { position, triangle }));
+            self.caller_ids.push(caller_id);
+            self.mesh_ids.push(mesh_id);
+        }
+        self.sub_scenes.push(SubScene { first_triangle, corners, nodes: bvh.nodes });
+    }
+}
+
+/// A hierarchy has at most two nodes a triangle, of 32 bytes, beside the 48 bytes of its corners: nodes fill a binding first.
+fn triangles_per_binding(max_binding_bytes: u64) -> usize {
+    (max_binding_bytes / (2 * size_of::<BvhNode>() as u64)).clamp(1, 1 << 27) as usize
+}
+
+fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
+    (b - a).cross(c - a) == DVec3::ZERO
+}
+
+fn position_order(a: &[f32; 3], b: &[f32; 3]) -> std::cmp::Ordering {
+    a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
+}
+
+fn triangle_order(a: &[[f32; 3]; 3], b: &[[f32; 3]; 3]) -> std::cmp::Ordering {
+    position_order(&a[0], &b[0]).then_with(|| position_order(&a[1], &b[1])).then_with(|| position_order(&a[2], &b[2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+
+    const ROOMY: u64 = 128 << 20;
+
+    fn grid(n: u32, scale: f64, offset: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+        let point = |i: u32, j: u32| {
+            let (x, z) = (f64::from(i) / f64::from(n), f64::from(j) / f64::from(n));
+            [x, 0.3 * (x * 7.0).sin() * z, z].map(|c| c * scale)
+        };
+        let vertices = (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j))).map(|(i, j)| point(i, j));
+        let vertices = vertices.map(|p| [0, 1, 2].map(|k| p[k] + offset[k])).collect();
+        let at = |i: u32, j: u32| i * (n + 1) + j;
+        let cells = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+        let triangles = cells
+            .flat_map(|(i, j)| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]])
+            .collect();
+        (vertices, triangles)
+    }
+
+    fn local(vertices: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> LocalScene {
+        let mesh = Mesh::new("grid", vertices, triangles, Material::default()).unwrap();
+        LocalScene::new(&Scene::new(vec![mesh]).unwrap(), None, ROOMY).unwrap()
+    }
+
+    #[test]
+    fn permuted_and_rewound_triangles_give_the_same_bits() {
+        let (vertices, triangles) = grid(9, 1.0, [0.0; 3]);
+        let base = local(vertices.clone(), triangles.clone());
+        let mut shuffled: Vec<[u32; 3]> = triangles.iter().map(|t| [t[2], t[0], t[1]]).collect();
+        shuffled.reverse();
+        shuffled.swap(3, 77);
+        assert_eq!(base.sub_scenes, local(vertices.clone(), shuffled).sub_scenes);
+        let mut moved = vertices;
+        moved[5][1] += 1e-3;
+        assert_ne!(base.sub_scenes, local(moved, triangles).sub_scenes);
+    }
+
+    #[test]
+    fn powers_of_two_and_dyadic_offsets_change_no_bit() {
+        let (vertices, triangles) = grid(9, 1.0, [0.0; 3]);
+        let base = local(vertices, triangles.clone());
+        for scale in [2f64.powi(20), 2f64.powi(-20)] {
+            assert_eq!(base.sub_scenes, local(grid(9, scale, [0.0; 3]).0, triangles.clone()).sub_scenes);
+        }
+        let dyadic: Vec<[f64; 3]> =
+            grid(8, 1.0, [0.0; 3]).0.iter().map(|v| v.map(|x| (x * 4096.0).round() / 4096.0)).collect();
+        let moved = dyadic.iter().map(|v| [v[0] + 524_288.0, v[1] + 4_194_304.0, v[2]]).collect();
+        let triangles = grid(8, 1.0, [0.0; 3]).1;
+        assert_eq!(local(dyadic, triangles.clone()).sub_scenes, local(moved, triangles).sub_scenes);
+    }
+
+    #[test]
+    fn degenerate_triangles_are_dropped_and_counted_and_ids_stay_the_callers() {
+        let (vertices, mut triangles) = grid(2, 1.0, [0.0; 3]);
+        triangles.insert(0, [1, 1, 2]);
+        triangles.insert(3, [0, 3, 3]);
+        let scene = local(vertices, triangles);
+        assert_eq!(scene.dropped, Dropped { zero_area: 2, below_resolution: 0 });
+        let mut ids = scene.caller_ids.clone();
+        ids.sort_unstable();
+        assert_eq!(ids, [1, 2, 4, 5, 6, 7, 8, 9]);
+
+        let tiny = vec![[0.0; 3], [1e-12, 0.0, 0.0], [0.0, 1e-12, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let scene = local(tiny, vec![[0, 1, 2], [0, 3, 4]]);
+        assert_eq!(scene.dropped, Dropped { zero_area: 0, below_resolution: 1 });
+    }
+
+    #[test]
+    fn a_scene_over_the_binding_limit_is_cut() {
+        let (vertices, triangles) = grid(20, 1.0, [0.0; 3]);
+        let mesh = Mesh::new("grid", vertices, triangles, Material::default()).unwrap();
+        let scene = Scene::new(vec![mesh]).unwrap();
+        let cut = LocalScene::new(&scene, None, 64 * 100).unwrap();
+        assert_eq!(cut.sub_scenes.len(), 8);
+        assert!(cut.sub_scenes.iter().all(|s| s.corners.len() * 16 <= 6400 && s.nodes.len() * 32 <= 6400));
+        let mut whole: Vec<_> = LocalScene::new(&scene, None, ROOMY).unwrap().triangles().collect();
+        let mut parts: Vec<_> = cut.triangles().collect();
+        whole.sort_by(triangle_order);
+        parts.sort_by(triangle_order);
+        assert_eq!(whole, parts);
+    }
+}

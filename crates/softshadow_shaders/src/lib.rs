@@ -1,0 +1,1 @@
+//! The WGSL of softshadow: linked, validated and described by reflection
