@@ -1,1 +1,19 @@
-//! How visibility is computed, as a value: textures, buffers and passes
+//! How visibility is computed, as a value: resources and passes in the order in which they run. No device is needed to make,
+//! check, print, compare or weigh a plan.
+
+mod check;
+mod explain;
+mod host;
+mod pass;
+mod plan;
+mod program;
+mod resource;
+
+pub use check::{PlanError, check};
+pub use host::{Features, Host, Limits};
+pub use pass::{
+    Blend, ColorTarget, Compare, Count, DepthTarget, Kernel, Over, Pass, Raster, RasterKernel, VertexSource, Work,
+};
+pub use plan::{Plan, SLICE};
+pub use program::{Program, Stage, Step, Values};
+pub use resource::{Content, ContentKey, Origin, Resource, ResourceId, Shape, TextureFormat};

@@ -1,5 +1,9 @@
 //! What is lit: meshes, lights, cameras and receivers. Pure geometry in float64, no GPU and no shader.
 
+pub mod edges;
+pub mod procedural;
+pub mod scene_file;
+
 mod bvh;
 mod camera;
 mod error;

@@ -1,0 +1,13 @@
+// Depth of the nearest occluder as seen from the light's centre.
+//#import hard_shadow_map/view.wgsl
+
+@group(0) @binding(0) var<uniform> shadow_view: ShadowView;
+
+@vertex
+fn draw(@location(0) position: vec3<f32>) -> @builtin(position) vec4<f32> {
+    let p = position - shadow_view.eye;
+    let distance = dot(shadow_view.forward, p);
+    let w = select(1.0, distance, shadow_view.perspective > 0.0);
+    let depth = select(1.0 - distance / shadow_view.near, shadow_view.near, shadow_view.perspective > 0.0);
+    return vec4<f32>(dot(shadow_view.clip_x, p), dot(shadow_view.clip_y, p), depth, w);
+}
