@@ -1,1 +1,127 @@
-//! One file a published shadow technique, each a function from a request to a plan
+//! Shadow techniques, one file a published method, each a function from a request to a plan.
+//!
+//! A technique never names a device and never imports another; what two share lives in [`parts`].
+
+mod block;
+pub mod hard_shadow_map;
+pub mod parts;
+mod program;
+pub mod ray_traced;
+mod request;
+
+use serde::{Deserialize, Serialize};
+use softshadow_plan::{Plan, Values};
+use softshadow_scene::{Light, SceneError};
+
+pub use block::{Block, blocks};
+pub use hard_shadow_map::HardShadowMap;
+pub use parts::scene_buffers::SceneContents;
+pub use parts::shading::Shading;
+pub use program::{StageTask, VisibilityProgram};
+pub use ray_traced::RayTraced;
+pub use request::{ReceiverSource, Request, Wants};
+
+/// Every technique there is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "name", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Technique {
+    /// Shadow rays to light samples: the reference on the GPU.
+    RayTraced(RayTraced),
+    /// One depth map from the light's centre: what softness is compared with.
+    HardShadowMap(HardShadowMap),
+}
+
+/// A setting out of range, or a request that a technique cannot serve.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TechniqueError {
+    /// A setting that has no meaning.
+    #[error("{technique} {setting}: {reason}")]
+    Setting {
+        /// The technique's name.
+        technique: &'static str,
+        /// The setting's name.
+        setting: &'static str,
+        /// Why it cannot be, and what can.
+        reason: String,
+    },
+    /// The light's samples cannot be made.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+impl Technique {
+    /// Every technique with its default settings.
+    #[must_use]
+    pub fn defaults() -> Vec<Self> {
+        vec![Self::RayTraced(RayTraced::default()), Self::HardShadowMap(HardShadowMap::default())]
+    }
+
+    /// The name by which settings files and the command line know it.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::RayTraced(_) => "ray_traced",
+            Self::HardShadowMap(_) => "hard_shadow_map",
+        }
+    }
+
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// [`TechniqueError::Setting`] names the first one out of range.
+    pub fn check(&self) -> Result<(), TechniqueError> {
+        match self {
+            Self::RayTraced(settings) => settings.check(),
+            Self::HardShadowMap(settings) => settings.check(),
+        }
+    }
+
+    /// Progressive passes that one light takes.
+    #[must_use]
+    pub fn passes(&self) -> u32 {
+        match self {
+            Self::RayTraced(settings) => settings.passes,
+            Self::HardShadowMap(_) => 1,
+        }
+    }
+
+    /// Rows of an image beyond a block that its results depend on.
+    #[must_use]
+    pub fn halo_rows(&self) -> u32 {
+        match self {
+            Self::RayTraced(settings) => u32::from(settings.probes > 0),
+            Self::HardShadowMap(_) => 0,
+        }
+    }
+
+    /// Bytes on the device that one receiver takes, beyond the receiver itself.
+    #[must_use]
+    pub fn bytes_per_receiver(&self, channels: u64) -> u64 {
+        match self {
+            Self::RayTraced(settings) => settings.bytes_per_receiver(channels),
+            Self::HardShadowMap(_) => 4 * channels,
+        }
+    }
+
+    /// The plan for one light and one block of receivers.
+    #[must_use]
+    pub fn plan(&self, request: &Request<'_>) -> Plan {
+        match self {
+            Self::RayTraced(settings) => ray_traced::plan(request, settings),
+            Self::HardShadowMap(settings) => hard_shadow_map::plan(request, settings),
+        }
+    }
+
+    /// The values of that plan's parameters for one progressive pass.
+    ///
+    /// # Errors
+    /// [`TechniqueError`] when the light's samples cannot be made.
+    pub fn values(&self, request: &Request<'_>, light: &Light, pass: u32) -> Result<Values, TechniqueError> {
+        match self {
+            Self::RayTraced(settings) => ray_traced::values(request, settings, light, pass),
+            Self::HardShadowMap(settings) => hard_shadow_map::values(request, settings, light),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! What is true about soft shadows, and how far an image is from it.
+//!
+//! Visibility V is the fraction of a light that a receiver sees: 1 is fully lit. The fraction is of the light's area, for
+//! spherical lights of its solid angle; there is no cosine in it. Triangles are two-sided and block what lies strictly
+//! behind them; light below the receiver's horizon counts as hidden, and so does everything for a receiver behind a
+//! one-sided light.
+//!
+//! This crate imports nothing of ours: it shares no line with what it judges. Its parts judge each other in their tests.
+//!
+//! | truth | applies to | error | wrong when |
+//! |---|---|---|---|
+//! | [`half_plane_over_rectangle`], [`rectangle_over_rectangle`], [`disc_over_disc`] | one flat occluder parallel to the light | rounding | the occluder is not parallel, or there are two |
+//! | [`sphere_over_rectangle`], [`sphere_over_sphere_light`] | one true sphere | about 1e-11 | the scene holds a tessellated sphere: its silhouette lies inside by about 1/n² |
+//! | [`rectangle_visibility`] | any small mesh, rectangular light | about 1e-12 | the receiver lies exactly on a triangle it does not exclude (V jumps there) |
+//! | [`RayReference`] | any mesh, given samples | exact up to the samples marked grazing | it is read as an area: n samples only know V to about n^-3/4 |
+//! | [`converged_visibility`] | any mesh, any light | its own standard error | an umbra or a lit region is thinner than the strata: mean and spread can both miss it |
+//!
+//! [`compare`] turns two images into an [`ErrorReport`].
+
+mod closed_form;
+mod error;
+mod exact_union;
+pub mod metrics;
+mod polygon;
+pub mod ray_reference;
+mod receiver;
+mod sampling;
+mod vector;
+
+pub use closed_form::{
+    AxisRectangle, Sphere, disc_over_disc, half_plane_over_rectangle, rectangle_over_rectangle, sphere_over_rectangle,
+    sphere_over_sphere_light,
+};
+pub use error::MeasureError;
+pub use exact_union::{RectangleLight, rectangle_visibility};
+pub use metrics::{ErrorReport, ReferenceImage, RegionError, compare};
+pub use ray_reference::{RayReference, SampleVerdict};
+pub use receiver::{Receiver, Target, Triangle};
+pub use sampling::{Estimate, SamplingPlan, converged_visibility, t_quantile_975};

@@ -1,0 +1,33 @@
+//! How far a float32 kernel's determinants can be from exact ones.
+//!
+//! The kernel under test rounds `a = v0 − p`, `b = v1 − p`, `c = v2 − p`, `d = s − p` to float32 and computes, in float32,
+//!
+//! ```text
+//! E01 = d·(a×b)   E12 = d·(b×c)   E02 = d·(a×c)   T = a·(b×c)   D = E01 + E12 − E02
+//! blocked iff  E01, E12, −E02 all >= 0 or all <= 0,  T ≠ 0,  D ≠ 0,  sign T = sign D,  |T| < |D| (points only)
+//! ```
+//!
+//! A computed sum of products differs from the exact one by at most `k·u` of the sum of absolute products, where k is the
+//! number of roundings that any one product passes through and u = 2^-24 (Higham, *Accuracy and Stability of Numerical
+//! Algorithms*, 3.1). The sum of the absolute products of a 3×3 determinant is the permanent of the absolute values. The
+//! bounds hold in any order of evaluation and with fused multiply-adds, which only leave roundings out; they assume
+//! coordinate differences between about 1e-12 and 1e12, so that no product of three underflows or overflows float32.
+
+/// Half the distance from 1 to the next float32, 2^-24: the relative error of one rounding.
+pub const UNIT_ROUNDOFF: f64 = 1.0 / 16_777_216.0;
+
+/// Roundings that one of the six products of a triple product passes through: three differences `v − p`; the product of
+/// two; the subtraction inside the cross product; the product with the third; two additions.
+pub const DETERMINANT_ROUNDINGS: f64 = 8.0;
+
+/// `D = E01 + E12 − E02` adds two more.
+pub const SUM_ROUNDINGS: f64 = DETERMINANT_ROUNDINGS + 2.0;
+
+/// `n·(s − p)` with n, s and p exact: one difference, one product, two additions.
+pub const HORIZON_ROUNDINGS: f64 = 4.0;
+
+/// The k·u of the bound, with a factor that covers both the terms of order u² and the rounding of the float64 evaluation.
+pub(crate) fn relative_bound(roundings: f64) -> f64 {
+    const SECOND_ORDER: f64 = 1.0 + 1.0 / 524_288.0;
+    roundings * UNIT_ROUNDOFF * SECOND_ORDER
+}

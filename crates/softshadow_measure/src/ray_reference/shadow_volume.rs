@@ -1,0 +1,174 @@
+//! One triangle as one receiver sees it: linear functions of the direction that decide whether a ray is blocked.
+
+use super::Ray;
+use super::bounds::{DETERMINANT_ROUNDINGS, SUM_ROUNDINGS, relative_bound};
+use crate::Triangle;
+use crate::vector::{Vec3, abs, add, cross, dot, scale, sub};
+
+/// How one blocker meets one ray.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Contact {
+    /// The float64 answer.
+    pub(super) hit: bool,
+    /// Some float32 evaluation within the bounds finds a hit.
+    pub(super) possible: bool,
+    /// Every float32 evaluation within the bounds finds a hit.
+    pub(super) certain: bool,
+}
+
+impl Contact {
+    pub(super) const NONE: Self = Self { hit: false, possible: false, certain: false };
+
+    pub(super) fn or(self, other: Self) -> Self {
+        Self {
+            hit: self.hit || other.hit,
+            possible: self.possible || other.possible,
+            certain: self.certain || other.certain,
+        }
+    }
+}
+
+/// The box of all rays of one receiver.
+pub(super) struct TargetHull {
+    center: Vec3,
+    half: Vec3,
+    /// Largest |direction|, componentwise.
+    reach: Vec3,
+    holds_directions: bool,
+}
+
+impl TargetHull {
+    /// `None` without rays.
+    pub(super) fn around<'a>(rays: impl Iterator<Item = &'a Ray>) -> Option<Self> {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        let mut holds_directions = false;
+        for ray in rays {
+            holds_directions |= ray.at_infinity;
+            for axis in 0..3 {
+                low[axis] = low[axis].min(ray.direction[axis]);
+                high[axis] = high[axis].max(ray.direction[axis]);
+            }
+        }
+        (low[0] <= high[0]).then(|| Self {
+            center: scale(add(low, high), 0.5),
+            half: scale(sub(high, low), 0.5),
+            reach: std::array::from_fn(|axis| low[axis].abs().max(high[axis].abs())),
+            holds_directions,
+        })
+    }
+}
+
+/// A linear function of the direction d with its rounding bound: `value·d ± (k·u) permanent·|d|`.
+#[derive(Clone, Copy)]
+struct Form {
+    value: Vec3,
+    permanent: Vec3,
+}
+
+impl Form {
+    /// d ↦ d·(x×y).
+    fn cross(x: Vec3, y: Vec3) -> Self {
+        let (p, q) = (abs(x), abs(y));
+        Self {
+            value: cross(x, y),
+            permanent: [p[1] * q[2] + p[2] * q[1], p[2] * q[0] + p[0] * q[2], p[0] * q[1] + p[1] * q[0]],
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { value: add(self.value, other.value), permanent: add(self.permanent, other.permanent) }
+    }
+
+    /// Value and rounding bound for one ray.
+    fn at(&self, ray: &Ray, roundings: f64) -> [f64; 2] {
+        let bound = relative_bound(roundings) * dot(self.permanent, ray.magnitude);
+        [dot(self.value, ray.direction), bound]
+    }
+
+    /// Middle and half width of an interval that holds value ± bound for every ray of the hull. The bound is widened by a
+    /// thousandth, far more than the rounding of the interval itself, so that what is culled here is never possible there.
+    fn over(&self, hull: &TargetHull, roundings: f64) -> [f64; 2] {
+        let bound = relative_bound(roundings) * 1.001 * dot(self.permanent, hull.reach);
+        let half_width = dot(abs(self.value), hull.half) + bound;
+        [dot(self.value, hull.center), half_width]
+    }
+}
+
+/// The infinite pyramid behind the triangle, with the receiver at its apex.
+pub(super) struct ShadowVolume {
+    /// E01, E12 and −E02: on which side of the planes through the receiver and each edge.
+    edges: [Form; 3],
+    /// D, their sum.
+    depth: Form,
+    /// T = a·(b×c), six times the volume of the tetrahedron of receiver and triangle, and its rounding bound.
+    volume: f64,
+    volume_bound: f64,
+}
+
+impl ShadowVolume {
+    pub(super) fn new(origin: Vec3, triangle: &Triangle) -> Self {
+        let [a, b, c] = triangle.map(|corner| sub(corner, origin));
+        let edges = [Form::cross(a, b), Form::cross(b, c), Form::cross(c, a)];
+        Self {
+            edges,
+            depth: edges[0].plus(edges[1]).plus(edges[2]),
+            volume: dot(a, edges[1].value),
+            volume_bound: relative_bound(DETERMINANT_ROUNDINGS) * dot(abs(a), edges[1].permanent),
+        }
+    }
+
+    /// False only when [`Self::contact`] finds no possible hit for any ray of the hull: the same inequalities, each over
+    /// an interval that holds all rays.
+    pub(super) fn may_touch(&self, hull: &TargetHull) -> bool {
+        let mut positive = self.volume + self.volume_bound > 0.0;
+        let mut negative = self.volume - self.volume_bound < 0.0;
+        for edge in &self.edges {
+            let [middle, half_width] = edge.over(hull, DETERMINANT_ROUNDINGS);
+            positive &= middle + half_width >= 0.0;
+            negative &= middle - half_width <= 0.0;
+            if !(positive || negative) {
+                return false;
+            }
+        }
+        if hull.holds_directions {
+            return true;
+        }
+        let [middle, half_width] = self.depth.over(hull, SUM_ROUNDINGS);
+        let (volume, bound) = (self.volume, self.volume_bound);
+        (positive && volume - bound < middle + half_width) || (negative && -volume - bound < half_width - middle)
+    }
+
+    /// Whether the triangle blocks the ray.
+    pub(super) fn contact(&self, ray: &Ray) -> Contact {
+        let mut positive = self.volume + self.volume_bound > 0.0;
+        let mut negative = self.volume - self.volume_bound < 0.0;
+        let mut edges = [[0.0; 2]; 3];
+        for (edge, form) in edges.iter_mut().zip(&self.edges) {
+            let [value, bound] = form.at(ray, DETERMINANT_ROUNDINGS);
+            positive &= value + bound >= 0.0;
+            negative &= value - bound <= 0.0;
+            if !(positive || negative) {
+                return Contact::NONE;
+            }
+            *edge = [value, bound];
+        }
+        let depth = self.depth.at(ray, SUM_ROUNDINGS);
+        let volume = [self.volume, self.volume_bound];
+        let mirrored = |x: [f64; 2]| [-x[0], x[1]];
+        let front = positive_contact(edges, depth, volume, ray.at_infinity);
+        let back = positive_contact(edges.map(mirrored), mirrored(depth), mirrored(volume), ray.at_infinity);
+        front.or(back)
+    }
+}
+
+/// The contact under the assumption that all determinants are positive; each is a value with its bound.
+fn positive_contact(edges: [[f64; 2]; 3], depth: [f64; 2], volume: [f64; 2], at_infinity: bool) -> Contact {
+    let holds = |slack: f64| {
+        edges.iter().all(|[e, bound]| e + slack * bound >= 0.0)
+            && depth[0] + slack * depth[1] > 0.0
+            && volume[0] + slack * volume[1] > 0.0
+            && (at_infinity || volume[0] - depth[0] < slack * (volume[1] + depth[1]))
+    };
+    Contact { hit: holds(0.0), possible: holds(1.0), certain: holds(-1.0) }
+}

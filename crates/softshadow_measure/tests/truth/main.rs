@@ -1,0 +1,14 @@
+//! The oracles judge each other, and every check is shown to fail on a spoilt input.
+//!
+//! One binary of many files: they share the meshes and the generator of random numbers.
+
+#![expect(clippy::print_stdout, reason = "the measured figures, shown by --nocapture")]
+
+mod closed_forms;
+mod exact_union;
+mod metrics;
+mod random;
+mod rays_exact;
+mod rays_float32;
+mod sampling;
+mod shapes;

@@ -1,0 +1,59 @@
+//! The scene on the device: corners and hierarchy of every sub-scene, uploaded once and kept.
+
+use softshadow_plan::{Content, Plan, ResourceId};
+use softshadow_scene::LocalScene;
+
+use crate::parts::shading;
+
+/// A local scene and the bytes that go to the device.
+#[derive(Debug, Clone)]
+pub struct SceneContents {
+    /// The scene in its local frame.
+    pub local: LocalScene,
+    /// Corners of each sub-scene.
+    pub corners: Vec<Content>,
+    /// Hierarchy of each sub-scene.
+    pub nodes: Vec<Content>,
+    /// Material index of each triangle.
+    pub triangle_materials: Content,
+    /// Materials.
+    pub materials: Content,
+}
+
+/// The scene's resources in one plan.
+#[derive(Debug, Clone)]
+pub struct SceneBuffers {
+    /// Corners of each sub-scene.
+    pub corners: Vec<ResourceId>,
+    /// Hierarchy of each sub-scene; empty where only corners are used.
+    pub nodes: Vec<ResourceId>,
+}
+
+impl SceneContents {
+    /// Lays a scene out as the kernels read it.
+    #[must_use]
+    pub fn new(local: LocalScene) -> Self {
+        let corners = local.sub_scenes.iter().map(|s| Content::new(bytemuck::cast_slice(&s.corners))).collect();
+        let nodes = local.sub_scenes.iter().map(|s| Content::new(bytemuck::cast_slice(&s.nodes))).collect();
+        let triangle_materials = Content::new(bytemuck::cast_slice(&local.mesh_ids));
+        let materials = shading::material_content(&local.materials);
+        Self { local, corners, nodes, triangle_materials, materials }
+    }
+
+    /// All contents, for an engine to upload by key.
+    pub fn contents(&self) -> impl Iterator<Item = &Content> {
+        self.corners.iter().chain(&self.nodes).chain([&self.triangle_materials, &self.materials])
+    }
+}
+
+/// Adds the corners of every sub-scene.
+pub fn append_corners(plan: &mut Plan, scene: &SceneContents) -> Vec<ResourceId> {
+    let add = |(index, content): (usize, &Content)| plan.uploaded(format!("corners {index}"), content);
+    scene.corners.iter().enumerate().map(add).collect()
+}
+
+/// Adds the hierarchy of every sub-scene.
+pub fn append_nodes(plan: &mut Plan, scene: &SceneContents) -> Vec<ResourceId> {
+    let add = |(index, content): (usize, &Content)| plan.uploaded(format!("hierarchy {index}"), content);
+    scene.nodes.iter().enumerate().map(add).collect()
+}

@@ -1,0 +1,269 @@
+//! # `ray_traced`: shadow rays to light samples
+//!
+//! The reference on the GPU. For a receiver p and each light sample s, the segment from p to s is traced through a hierarchy
+//! until anything is hit; V is the share of samples that are visible. Blocked is what lies below the receiver's horizon, what
+//! is hidden by any triangle but the receiver's own, and everything behind a one-sided light.
+//!
+//! **Parameters.** `samples` a pass; their `pattern` and `seed`; `passes`, averaged, each with its own samples, from whose
+//! spread the standard error comes; `probes`: that many samples first, and all of them only where they disagree among
+//! themselves or within the eight neighbouring pixels (0 traces all samples everywhere).
+//!
+//! **When it is wrong.** A share of n samples is off by about 0.016 at 64 stratified samples along a straight edge, and all
+//! receivers share one set, so penumbrae show n steps rather than noise; more samples or passes help. `probes` can miss an
+//! occluder that hides less than one probe's share of the light and no neighbour's. A ray within rounding of an edge may fall to
+//! either side, but never between two triangles that share one.
+//!
+//! **Sources.** Determinant test with shared edges: Davidovič, Engelhardt, Georgiev, Slusallek, Dachsbacher 2012, section 4.
+//! Hierarchy without stack: Smits 1998. The interval of a bundle of rays: Wald, Ize, Kensler, Knoll, Parker 2006.
+
+use serde::{Deserialize, Serialize};
+use softshadow_plan::{Kernel, Over, Plan, ResourceId, Values};
+use softshadow_scene::{Light, MAX_SAMPLES, SamplePattern};
+
+use crate::TechniqueError;
+use crate::parts::light_buffers::{self, SampleSet, Sampling};
+use crate::parts::shading::{self, Seen};
+use crate::parts::{receivers, scene_buffers};
+use crate::request::{ReceiverSource, Request};
+
+/// Settings of `ray_traced`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RayTraced {
+    /// Light samples of one pass, 1 to 65,536.
+    pub samples: u32,
+    /// How they are spread.
+    #[serde(with = "pattern_name")]
+    pub pattern: SamplePattern,
+    /// Which set of them.
+    pub seed: u32,
+    /// Progressive passes.
+    pub passes: u32,
+    /// Samples that decide whether a receiver needs all; 0 traces all samples everywhere.
+    pub probes: u32,
+}
+
+impl Default for RayTraced {
+    fn default() -> Self {
+        Self { samples: 64, pattern: SamplePattern::Stratified, seed: 0, passes: 1, probes: 0 }
+    }
+}
+
+mod pattern_name {
+    use serde::de::Error as _;
+    use serde::{Deserialize, Deserializer, Serializer};
+    use softshadow_scene::SamplePattern;
+
+    const NAMES: [(&str, SamplePattern); 2] =
+        [("stratified", SamplePattern::Stratified), ("low_discrepancy", SamplePattern::LowDiscrepancy)];
+
+    pub(super) fn serialize<S: Serializer>(pattern: &SamplePattern, serializer: S) -> Result<S::Ok, S::Error> {
+        let name = NAMES.iter().find(|(_, p)| p == pattern).map_or("", |(name, _)| name);
+        serializer.serialize_str(name)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<SamplePattern, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let found = NAMES.iter().find(|(n, _)| *n == name).map(|(_, pattern)| *pattern);
+        found.ok_or_else(|| D::Error::custom(format!("pattern '{name}' is neither 'stratified' nor 'low_discrepancy'")))
+    }
+}
+
+/// Label of the values.
+pub const VISIBILITY: &str = "visibility";
+/// Label of their standard errors.
+pub const STANDARD_ERROR: &str = "standard error";
+/// Label of the masks of blocked samples.
+pub const BLOCKED: &str = "blocked samples";
+
+const BEGIN: Kernel = Kernel { file: "ray_traced/begin.wgsl", entry: "begin" };
+const TRACE: Kernel = Kernel { file: "ray_traced/trace.wgsl", entry: "trace" };
+const CHOOSE: Kernel = Kernel { file: "ray_traced/choose.wgsl", entry: "choose" };
+const RESOLVE: Kernel = Kernel { file: "ray_traced/resolve.wgsl", entry: "resolve" };
+const RESOLVE_TEXTURED: Kernel = Kernel { file: "ray_traced/resolve.wgsl", entry: "resolve_textured" };
+
+/// `TraceRange` of `trace.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct TraceRange {
+    first_sample: u32,
+    node_count: u32,
+}
+
+/// `ProbeImage` of `choose.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct ProbeImage {
+    width: u32,
+    height: u32,
+}
+
+impl RayTraced {
+    pub(crate) fn check(&self) -> Result<(), TechniqueError> {
+        let fail = |setting, reason: String| Err(TechniqueError::Setting { technique: "ray_traced", setting, reason });
+        if self.samples == 0 || self.samples > MAX_SAMPLES {
+            return fail("samples", format!("must lie between 1 and {MAX_SAMPLES}, got {}", self.samples));
+        }
+        if self.passes == 0 {
+            return fail("passes", "must be at least 1".into());
+        }
+        if self.probes >= self.samples && self.probes != 0 {
+            return fail("probes", format!("must be fewer than the {} samples, or 0 for none", self.samples));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn bytes_per_receiver(&self, channels: u64) -> u64 {
+        // Masks, the number of samples decided, values and their errors.
+        u64::from(self.words()) * 4 + 4 + 8 * channels
+    }
+
+    fn words(&self) -> u32 {
+        self.samples.div_ceil(32)
+    }
+
+    fn sampling(&self, pass_index: u32) -> Sampling {
+        Sampling {
+            count: self.samples,
+            words: self.words(),
+            probes: if self.probes == 0 { self.samples } else { self.probes },
+            pass_index,
+            passes: self.passes,
+            ..Sampling::default()
+        }
+    }
+}
+
+/// Masks open with the horizon, every sub-scene's hits are OR-ed in, and their share is the result.
+pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
+    let mut plan = Plan::new("ray traced");
+    let count = request.block.count;
+    let receivers = receivers::append(&mut plan, request);
+    let light = light_buffers::append(&mut plan, settings.samples);
+    let words = u64::from(settings.words());
+    let blocked = plan.buffer(BLOCKED, count as u64 * words * 4);
+    let decided = plan.buffer("decided samples", count as u64 * 4);
+    let items = |work_per_item| Over::Items { count: count as u32, work_per_item };
+
+    plan.compute("open masks", "blocks what lies below the horizon or behind the light", BEGIN, items(words as u32))
+        .bind("light", light.light)
+        .bind("sampling", light.sampling)
+        .bind("receivers", receivers)
+        .bind("light_samples", light.samples)
+        .bind("blocked", blocked)
+        .bind("decided", decided);
+
+    if !request.scene.local.sub_scenes.is_empty() {
+        let corners = match plan.find("corners 0") {
+            Some(_) => (0..request.scene.corners.len()).filter_map(|i| plan.find(&format!("corners {i}"))).collect(),
+            None => scene_buffers::append_corners(&mut plan, request.scene),
+        };
+        let nodes = scene_buffers::append_nodes(&mut plan, request.scene);
+        let trace = |plan: &mut Plan, stage: &str, why: &str, rays: u32| {
+            for index in 0..corners.len() {
+                let range = plan.parameter(format!("{stage} range {index}"), size_of::<TraceRange>() as u64);
+                plan.compute(format!("{stage} {index}"), why, TRACE, items(rays))
+                    .bind("light", light.light)
+                    .bind("sampling", light.sampling)
+                    .bind("trace_range", range)
+                    .bind("receivers", receivers)
+                    .bind("light_samples", light.samples)
+                    .bind("nodes", nodes[index])
+                    .bind("corners", corners[index])
+                    .bind("decided", decided)
+                    .bind("blocked", blocked);
+            }
+        };
+        if settings.probes == 0 {
+            trace(&mut plan, "trace", "traces every sample", settings.samples);
+        } else {
+            trace(&mut plan, "probe", "traces the first samples of every receiver", settings.probes);
+            append_choice(&mut plan, items(settings.probes / 4 + 1), [light.sampling, receivers, blocked, decided]);
+            trace(&mut plan, "trace", "traces the other samples where the probes disagree", settings.samples);
+        }
+    }
+    append_results(&mut plan, request, settings, &light, [receivers, blocked, decided]);
+    plan
+}
+
+fn append_choice(plan: &mut Plan, over: Over, [sampling, receivers, blocked, decided]: [ResourceId; 4]) {
+    let image = plan.parameter("probe image", size_of::<ProbeImage>() as u64);
+    plan.compute("choose", "finds the receivers whose probes or neighbours disagree", CHOOSE, over)
+        .bind("sampling", sampling)
+        .bind("probe_image", image)
+        .bind("receivers", receivers)
+        .bind("blocked", blocked)
+        .bind("decided", decided);
+}
+
+fn append_results(
+    plan: &mut Plan,
+    request: &Request<'_>,
+    settings: &RayTraced,
+    light: &light_buffers::LightBuffers,
+    [receivers, blocked, decided]: [ResourceId; 3],
+) {
+    let bytes = request.block.count as u64 * 4 * u64::from(request.channels);
+    let visibility = plan.persistent(VISIBILITY, bytes);
+    let standard_error = plan.persistent(STANDARD_ERROR, bytes);
+    let textured = request.channels == 3;
+    let over = Over::Items { count: request.block.count as u32, work_per_item: settings.words() };
+    let radiance = textured.then(|| light_buffers::append_radiance(plan, settings.samples));
+    let kernel = if textured { RESOLVE_TEXTURED } else { RESOLVE };
+    let pass = plan.compute("resolve", "turns masks into visibility and its standard error", kernel, over);
+    pass.bind("sampling", light.sampling)
+        .bind("decided", decided)
+        .bind("blocked", blocked)
+        .bind("visibility", visibility)
+        .bind("standard_error", standard_error);
+    if let Some(radiance) = radiance {
+        pass.bind("sample_radiance", radiance);
+    }
+    match request.wants.picture {
+        None => {}
+        Some(shading::Shading::Integrated) => {
+            let seen = Seen::Masks { blocked, decided };
+            shading::append(plan, request, receivers, light, seen, settings.samples);
+        }
+        Some(shading::Shading::Modulated) => {
+            shading::append(plan, request, receivers, light, Seen::Values(visibility), settings.samples);
+        }
+    }
+    if request.closes_light {
+        plan.outputs.push(visibility);
+        plan.outputs.extend(request.wants.standard_error.then_some(standard_error));
+        plan.outputs.extend(request.wants.sample_masks.then_some(blocked));
+    }
+    // Everybody needs to know which pixels see anything, and that stands in the receivers.
+    plan.outputs.extend(request.opens_block.then_some(receivers));
+}
+
+/// The values of the plan's parameters for one light and pass.
+pub(crate) fn values(
+    request: &Request<'_>,
+    settings: &RayTraced,
+    light: &Light,
+    pass: u32,
+) -> Result<Values, TechniqueError> {
+    let mut values = Values::new();
+    receivers::values(request, &mut values)?;
+    let set = SampleSet { pattern: settings.pattern, count: settings.samples, seed: settings.seed.wrapping_add(pass) };
+    light_buffers::values(request, light, set, &mut values)?;
+    values.insert("sampling".into(), bytemuck::bytes_of(&settings.sampling(pass)).to_vec());
+    for (index, sub_scene) in request.scene.local.sub_scenes.iter().enumerate() {
+        let node_count = sub_scene.nodes.len() as u32;
+        for (stage, first_sample) in [("probe", 0), ("trace", settings.probes)] {
+            let range = TraceRange { first_sample, node_count };
+            values.insert(format!("{stage} range {index}"), bytemuck::bytes_of(&range).to_vec());
+        }
+    }
+    let image = match request.receivers {
+        ReceiverSource::Camera(camera) => {
+            ProbeImage { width: camera.size()[0], height: (request.block.count / camera.size()[0] as usize) as u32 }
+        }
+        ReceiverSource::Points(_) => ProbeImage { width: 0, height: 0 },
+    };
+    values.insert("probe image".into(), bytemuck::bytes_of(&image).to_vec());
+    shading::values(request, settings.passes, &mut values);
+    Ok(values)
+}
