@@ -96,8 +96,7 @@ fn is_blocked(receiver: Receiver, way: vec3<f32>, unbounded: bool, range: vec2<u
             let a = corners[3u * k];
             let b = corners[3u * k + 1u].position;
             let c = corners[3u * k + 2u].position;
-            let p = receiver.position;
-            let blocks = triangle_blocks(a.position - p, b - p, c - p, way, unbounded);
+            let blocks = triangle_blocks(a.position, b, c, receiver.position, way, unbounded);
             hit = hit || (blocks && a.triangle != receiver.triangle);
         }
         node = select(box.skip, node + 1u, met && box.leaf == 0u);

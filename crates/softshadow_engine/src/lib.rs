@@ -1,1 +1,14 @@
-//! Runs plans on wgpu: adapters, pipelines, resources, uploads, readback, timing
+//! Runs plans on wgpu, and is the only crate that knows it: adapters, pipelines, resources, upload, readback, timing, errors.
+//!
+//! The engine knows no technique: it looks kernels up by name and does what the passes say, in order.
+
+mod adapter;
+mod error;
+mod pipelines;
+mod pool;
+mod run;
+mod timing;
+
+pub use adapter::{AdapterChoice, AdapterInfo, DeviceKind, adapters};
+pub use error::EngineError;
+pub use run::{Engine, PassTime, RunReport, StageReport};

@@ -1,13 +1,22 @@
 //! A scene: meshes in world space, plus what reading them left out.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use crate::error::SceneError;
 use crate::mesh::{MAX_TRIANGLES, Mesh};
 
 /// Meshes in world space. Triangle ids count through the meshes in order, as the caller gave them.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Scene {
     meshes: Vec<Mesh>,
     notes: Vec<String>,
+    identity: u64,
+}
+
+impl PartialEq for Scene {
+    fn eq(&self, other: &Self) -> bool {
+        self.meshes == other.meshes && self.notes == other.notes
+    }
 }
 
 impl Scene {
@@ -20,7 +29,14 @@ impl Scene {
         if needed > MAX_TRIANGLES {
             return Err(SceneError::TooLarge { what: "triangles of the scene".into(), needed, limit: MAX_TRIANGLES });
         }
-        Ok(Self { meshes, notes: Vec::new() })
+        static NEXT: AtomicU64 = AtomicU64::new(1);
+        Ok(Self { meshes, notes: Vec::new(), identity: NEXT.fetch_add(1, Ordering::Relaxed) })
+    }
+
+    /// A number that this scene and its clones share with no other: what was made from its meshes can be kept under it.
+    #[must_use]
+    pub fn identity(&self) -> u64 {
+        self.identity
     }
 
     /// The meshes in the order in which they were given.

@@ -1,7 +1,7 @@
 //! One triangle as one receiver sees it: linear functions of the direction that decide whether a ray is blocked.
 
 use super::Ray;
-use super::bounds::{DETERMINANT_ROUNDINGS, SUM_ROUNDINGS, relative_bound};
+use super::bounds::{DETERMINANT_ROUNDINGS, relative_bound};
 use crate::Triangle;
 use crate::vector::{Vec3, abs, add, cross, dot, scale, sub};
 
@@ -76,20 +76,16 @@ impl Form {
         }
     }
 
-    fn plus(self, other: Self) -> Self {
-        Self { value: add(self.value, other.value), permanent: add(self.permanent, other.permanent) }
-    }
-
-    /// Value and rounding bound for one ray.
-    fn at(&self, ray: &Ray, roundings: f64) -> [f64; 2] {
-        let bound = relative_bound(roundings) * dot(self.permanent, ray.magnitude);
-        [dot(self.value, ray.direction), bound]
+    /// Value and rounding bound for one direction, given with its componentwise magnitude.
+    fn at(&self, direction: Vec3, magnitude: Vec3) -> [f64; 2] {
+        let bound = relative_bound(DETERMINANT_ROUNDINGS) * dot(self.permanent, magnitude);
+        [dot(self.value, direction), bound]
     }
 
     /// Middle and half width of an interval that holds value ± bound for every ray of the hull. The bound is widened by a
     /// thousandth, far more than the rounding of the interval itself, so that what is culled here is never possible there.
-    fn over(&self, hull: &TargetHull, roundings: f64) -> [f64; 2] {
-        let bound = relative_bound(roundings) * 1.001 * dot(self.permanent, hull.reach);
+    fn over(&self, hull: &TargetHull) -> [f64; 2] {
+        let bound = relative_bound(DETERMINANT_ROUNDINGS) * 1.001 * dot(self.permanent, hull.reach);
         let half_width = dot(abs(self.value), hull.half) + bound;
         [dot(self.value, hull.center), half_width]
     }
@@ -99,23 +95,21 @@ impl Form {
 pub(super) struct ShadowVolume {
     /// E01, E12 and −E02: on which side of the planes through the receiver and each edge.
     edges: [Form; 3],
-    /// D, their sum.
+    /// D = d·(e1×e2), how far the ray goes across the plane of the triangle. Equal to the sum of the edges but rounded much
+    /// less: a small triangle far away has small e1 and e2.
     depth: Form,
-    /// T = a·(b×c), six times the volume of the tetrahedron of receiver and triangle, and its rounding bound.
+    /// T = a·(e1×e2), how far that plane is, six times the volume of the tetrahedron; with its rounding bound.
     volume: f64,
     volume_bound: f64,
 }
 
 impl ShadowVolume {
     pub(super) fn new(origin: Vec3, triangle: &Triangle) -> Self {
+        let [v0, v1, v2] = *triangle;
         let [a, b, c] = triangle.map(|corner| sub(corner, origin));
-        let edges = [Form::cross(a, b), Form::cross(b, c), Form::cross(c, a)];
-        Self {
-            edges,
-            depth: edges[0].plus(edges[1]).plus(edges[2]),
-            volume: dot(a, edges[1].value),
-            volume_bound: relative_bound(DETERMINANT_ROUNDINGS) * dot(abs(a), edges[1].permanent),
-        }
+        let depth = Form::cross(sub(v1, v0), sub(v2, v0));
+        let [volume, volume_bound] = depth.at(a, abs(a));
+        Self { edges: [Form::cross(a, b), Form::cross(b, c), Form::cross(c, a)], depth, volume, volume_bound }
     }
 
     /// False only when [`Self::contact`] finds no possible hit for any ray of the hull: the same inequalities, each over
@@ -124,7 +118,7 @@ impl ShadowVolume {
         let mut positive = self.volume + self.volume_bound > 0.0;
         let mut negative = self.volume - self.volume_bound < 0.0;
         for edge in &self.edges {
-            let [middle, half_width] = edge.over(hull, DETERMINANT_ROUNDINGS);
+            let [middle, half_width] = edge.over(hull);
             positive &= middle + half_width >= 0.0;
             negative &= middle - half_width <= 0.0;
             if !(positive || negative) {
@@ -134,7 +128,7 @@ impl ShadowVolume {
         if hull.holds_directions {
             return true;
         }
-        let [middle, half_width] = self.depth.over(hull, SUM_ROUNDINGS);
+        let [middle, half_width] = self.depth.over(hull);
         let (volume, bound) = (self.volume, self.volume_bound);
         (positive && volume - bound < middle + half_width) || (negative && -volume - bound < half_width - middle)
     }
@@ -145,7 +139,7 @@ impl ShadowVolume {
         let mut negative = self.volume - self.volume_bound < 0.0;
         let mut edges = [[0.0; 2]; 3];
         for (edge, form) in edges.iter_mut().zip(&self.edges) {
-            let [value, bound] = form.at(ray, DETERMINANT_ROUNDINGS);
+            let [value, bound] = form.at(ray.direction, ray.magnitude);
             positive &= value + bound >= 0.0;
             negative &= value - bound <= 0.0;
             if !(positive || negative) {
@@ -153,7 +147,7 @@ impl ShadowVolume {
             }
             *edge = [value, bound];
         }
-        let depth = self.depth.at(ray, SUM_ROUNDINGS);
+        let depth = self.depth.at(ray.direction, ray.magnitude);
         let volume = [self.volume, self.volume_bound];
         let mirrored = |x: [f64; 2]| [-x[0], x[1]];
         let front = positive_contact(edges, depth, volume, ray.at_infinity);

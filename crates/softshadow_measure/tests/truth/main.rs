@@ -6,9 +6,11 @@
 
 mod closed_forms;
 mod exact_union;
+mod kernel32;
 mod metrics;
 mod random;
 mod rays_exact;
+mod rays_far;
 mod rays_float32;
 mod sampling;
 mod shapes;

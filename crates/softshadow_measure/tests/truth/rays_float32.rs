@@ -2,97 +2,11 @@
 
 use std::time::Instant;
 
-use softshadow_measure::{RayReference, Receiver, SampleVerdict, Target, Triangle};
+use softshadow_measure::{RayReference, Receiver, Target, Triangle};
 
+use crate::kernel32::{Comparison, Kernel, single_precision, visible};
 use crate::random::Random;
 use crate::shapes::{as_float32, sphere};
-
-type V3 = [f32; 3];
-
-/// What may be wrong with a kernel.
-#[derive(Clone, Copy, PartialEq)]
-enum Kernel {
-    Correct,
-    /// The products of every determinant are summed in another order, with fused multiply-adds.
-    Fused,
-    WrongSign,
-    BlindToItsEnd,
-    /// The occluders lie one part in a thousand off.
-    Shifted,
-}
-
-fn sub(a: V3, b: V3) -> V3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn det(x: V3, y: V3, z: V3, kernel: Kernel) -> f32 {
-    if kernel == Kernel::Fused {
-        let minor = |i: usize, j: usize| y[i].mul_add(z[j], -(y[j] * z[i]));
-        return x[2].mul_add(minor(0, 1), x[1].mul_add(minor(2, 0), x[0] * minor(1, 2)));
-    }
-    x[0] * (y[1] * z[2] - y[2] * z[1]) + x[1] * (y[2] * z[0] - y[0] * z[2]) + x[2] * (y[0] * z[1] - y[1] * z[0])
-}
-
-fn blocked(p: V3, target: Target, mut face: [V3; 3], kernel: Kernel) -> bool {
-    if kernel == Kernel::Shifted {
-        face.iter_mut().for_each(|corner| corner[0] += 1e-3);
-    }
-    let [a, b, c] = face.map(|corner| sub(corner, p));
-    let (d, at_infinity) = relative(p, target);
-    let e01 = det(d, a, b, kernel);
-    let e12 = det(d, b, c, kernel);
-    let e02 = det(d, a, c, kernel) * if kernel == Kernel::WrongSign { -1.0 } else { 1.0 };
-    let volume = det(a, b, c, kernel);
-    let depth = e01 + e12 - e02;
-    let edges = [e01, e12, -e02];
-    (edges.iter().all(|e| *e >= 0.0) || edges.iter().all(|e| *e <= 0.0))
-        && depth != 0.0
-        && volume != 0.0
-        && (volume > 0.0) == (depth > 0.0)
-        && (at_infinity || kernel == Kernel::BlindToItsEnd || volume.abs() < depth.abs())
-}
-
-fn relative(p: V3, target: Target) -> (V3, bool) {
-    match target {
-        Target::Point(s) => (sub(s.map(|x| x as f32), p), false),
-        Target::Direction(d) => (d.map(|x| x as f32), true),
-    }
-}
-
-fn visible(receiver: &Receiver, target: Target, mesh: &[Triangle], kernel: Kernel) -> bool {
-    let single = |point: [f64; 3]| point.map(|x| x as f32);
-    let p = single(receiver.origin);
-    let above = receiver.normal.is_none_or(|normal| {
-        let (n, (d, _)) = (single(normal), relative(p, target));
-        n[0] * d[0] + n[1] * d[1] + n[2] * d[2] > 0.0
-    });
-    above
-        && !mesh.iter().enumerate().any(|(index, face)| {
-            receiver.excluded_triangle != Some(index) && blocked(p, target, face.map(single), kernel)
-        })
-}
-
-#[derive(Default)]
-struct Comparison {
-    samples: usize,
-    grazing: usize,
-    excused: usize,
-    wrong: usize,
-}
-
-impl Comparison {
-    fn add(&mut self, verdict: SampleVerdict, visible: bool) {
-        self.samples += 1;
-        self.grazing += usize::from(verdict.grazing);
-        let differs = verdict.visible != visible;
-        self.excused += usize::from(differs && verdict.grazing);
-        self.wrong += usize::from(differs && !verdict.grazing);
-    }
-}
-
-fn single_precision(point: [f64; 3]) -> [f64; 3] {
-    point.map(|x| f64::from(x as f32))
-}
 
 /// One receiver, its samples and a mesh; a new kind of difficulty with every round.
 fn hard_case(random: &mut Random, round: usize) -> (Vec<Triangle>, Receiver, Vec<Target>) {

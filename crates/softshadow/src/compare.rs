@@ -1,0 +1,144 @@
+//! `compare`: what each technique costs and how far it is from a reference, on the same receivers.
+
+use serde::Serialize;
+use softshadow_measure::metrics;
+use softshadow_scene::{Light, Receivers, Scene};
+use softshadow_techniques::Technique;
+
+use crate::Progress;
+use crate::context::Context;
+use crate::error::Error;
+use crate::info::Info;
+use crate::visibility::{Options, Visibility, visibility};
+
+/// Techniques beside a reference.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// What made the reference.
+    pub reference: Info,
+    /// Root mean square of the reference's own standard error over the penumbra.
+    pub reference_standard_error: Option<f64>,
+    /// One row a technique, in the caller's order.
+    pub rows: Vec<ComparisonRow>,
+}
+
+/// One technique.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComparisonRow {
+    /// The technique and its settings.
+    pub technique: Technique,
+    /// Median wall time in milliseconds.
+    pub median_ms: f64,
+    /// Fastest and slowest run.
+    pub range_ms: [f64; 2],
+    /// Bytes on the device.
+    pub bytes: u64,
+    /// Errors over the penumbra (0.002 < V < 0.998 in the reference); none where there is no penumbra.
+    pub penumbra: Option<RegionErrors>,
+    /// Errors over all valid receivers.
+    pub overall: Option<RegionErrors>,
+    /// Share of the true umbra that is reported brighter than 0.05.
+    pub leak_fraction: Option<f64>,
+    /// Share of what is truly lit that is reported darker than 0.95.
+    pub false_shadow_fraction: Option<f64>,
+    /// Receivers that are off by more than 0.25.
+    pub gross_errors: usize,
+    /// The largest connected group of them, for images.
+    pub largest_gross_component: Option<usize>,
+}
+
+/// Errors over one set of receivers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RegionErrors {
+    /// Receivers in the set.
+    pub count: usize,
+    /// Root mean square error.
+    pub rmse: f64,
+    /// Mean absolute error.
+    pub mae: f64,
+    /// 95th percentile of the absolute error.
+    pub p95: f64,
+    /// 99th percentile of the absolute error.
+    pub p99: f64,
+    /// Largest absolute error.
+    pub max: f64,
+    /// Mean signed error: above 0 is too bright.
+    pub bias: f64,
+}
+
+/// Compares techniques with a reference; each runs once to warm up and `repeats` times, taking turns.
+///
+/// # Errors
+/// Any [`Error`].
+#[expect(clippy::too_many_arguments, reason = "a comparison names its scene, light, receivers and both sides")]
+pub fn compare(
+    context: &Context,
+    scene: &Scene,
+    light: &Light,
+    receivers: &Receivers,
+    techniques: &[Technique],
+    reference: &Technique,
+    repeats: u32,
+    on_progress: Progress<'_>,
+) -> Result<Comparison, Error> {
+    if repeats == 0 {
+        return Err(Error::Settings("compare repeats: must be at least 1".into()));
+    }
+    let lights = std::slice::from_ref(light);
+    let total = 1 + techniques.len() as u64 * (u64::from(repeats) + 1);
+    let mut done = 0;
+    let mut one = |technique: &Technique, standard_error: bool| {
+        let options = Options { standard_error, ..Options::default() };
+        let mut go_on = |_, _| on_progress(done, total);
+        let result = visibility(context, scene, lights, receivers, technique, &options, &mut go_on)?;
+        done += 1;
+        Ok::<Visibility, Error>(result)
+    };
+    let truth = one(reference, true)?;
+    let mut results = techniques.iter().map(|t| one(t, false)).collect::<Result<Vec<_>, _>>()?;
+    let mut times: Vec<Vec<f64>> = vec![Vec::new(); techniques.len()];
+    for _ in 0..repeats {
+        for (index, technique) in techniques.iter().enumerate() {
+            results[index] = one(technique, false)?;
+            times[index].push(results[index].info.wall_ms);
+        }
+    }
+    let mut reference_standard_error = None;
+    let mut rows = Vec::with_capacity(techniques.len());
+    for ((technique, result), times) in techniques.iter().zip(&results).zip(&mut times) {
+        let image = metrics::ReferenceImage {
+            visibility: &truth.values,
+            standard_error: truth.standard_error.as_deref(),
+            width: truth.image.filter(|_| truth.channels == 1).map(|[width, _]| width as usize),
+        };
+        let report = metrics::compare(&result.values, &image).map_err(|error| Error::Measure(error.to_string()))?;
+        reference_standard_error = report.penumbra_reference_se;
+        rows.push(row(technique, result, times, &report));
+    }
+    Ok(Comparison { reference: truth.info, reference_standard_error, rows })
+}
+
+fn row(technique: &Technique, result: &Visibility, times: &mut [f64], report: &metrics::ErrorReport) -> ComparisonRow {
+    times.sort_by(f64::total_cmp);
+    let errors = |region: &metrics::RegionError| RegionErrors {
+        count: region.count,
+        rmse: region.rmse,
+        mae: region.mae,
+        p95: region.p95,
+        p99: region.p99,
+        max: region.max,
+        bias: region.bias,
+    };
+    ComparisonRow {
+        technique: technique.clone(),
+        median_ms: times[times.len() / 2],
+        range_ms: [times[0], times[times.len() - 1]],
+        bytes: result.info.bytes.iter().map(|(_, bytes)| bytes).sum(),
+        penumbra: report.penumbra.as_ref().map(errors),
+        overall: report.overall.as_ref().map(errors),
+        leak_fraction: report.leak_fraction,
+        false_shadow_fraction: report.false_shadow_fraction,
+        gross_errors: report.gross_count,
+        largest_gross_component: report.largest_gross_component,
+    }
+}

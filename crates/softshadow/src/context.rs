@@ -1,0 +1,133 @@
+//! An open device and what is kept for it: the engine, and the scenes of the last calls as the device reads them.
+
+use std::collections::VecDeque;
+use std::str::FromStr;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use softshadow_engine::{AdapterChoice, AdapterInfo, DeviceKind, Engine};
+use softshadow_scene::{LocalScene, Receivers, Scene};
+use softshadow_techniques::SceneContents;
+
+use crate::error::Error;
+
+/// Scenes that are kept ready.
+const KEPT_SCENES: usize = 4;
+
+/// Which device computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DeviceChoice {
+    /// A GPU, else a software driver on the CPU.
+    #[default]
+    Auto,
+    /// A GPU.
+    Gpu,
+    /// A software driver on the CPU.
+    Software,
+    /// The adapter with this position in [`adapters`].
+    Index(usize),
+}
+
+impl FromStr for DeviceChoice {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        match text {
+            "auto" => Ok(Self::Auto),
+            "gpu" => Ok(Self::Gpu),
+            "software" => Ok(Self::Software),
+            _ => text.parse().map(Self::Index).map_err(|_| {
+                Error::Settings(format!("device '{text}' is none of 'auto', 'gpu', 'software' or an adapter's index"))
+            }),
+        }
+    }
+}
+
+/// Every adapter of this machine.
+#[must_use]
+pub fn adapters() -> Vec<AdapterInfo> {
+    softshadow_engine::adapters()
+}
+
+/// A device and its caches. Calls from several threads take turns.
+pub struct Context {
+    choice: AdapterChoice,
+    adapter: AdapterInfo,
+    engine: Mutex<Arc<Engine>>,
+    scenes: Mutex<VecDeque<(u64, Arc<SceneContents>)>>,
+}
+
+impl Context {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// [`Error::Device`] says how to install one where there is none.
+    pub fn new(choice: &DeviceChoice) -> Result<Self, Error> {
+        let choice = match *choice {
+            DeviceChoice::Auto => AdapterChoice::Auto,
+            DeviceChoice::Gpu => AdapterChoice::Gpu,
+            DeviceChoice::Software => AdapterChoice::Software,
+            DeviceChoice::Index(index) => AdapterChoice::Index(index),
+        };
+        let engine = Engine::new(choice)?;
+        let adapter = engine.adapter().clone();
+        if adapter.device_type == DeviceKind::Software {
+            log::warn!("'{}' is a software adapter: everything runs on the CPU", adapter.name);
+        }
+        Ok(Self { choice, adapter, engine: Mutex::new(Arc::new(engine)), scenes: Mutex::default() })
+    }
+
+    /// What the device is.
+    #[must_use]
+    pub fn adapter(&self) -> &AdapterInfo {
+        &self.adapter
+    }
+
+    /// Destroys the device as a failing driver would, for tests of what follows.
+    pub fn lose_device(&self) {
+        lock(&self.engine).destroy();
+    }
+
+    /// The engine; opened again where the device was lost.
+    pub(crate) fn engine(&self) -> Result<Arc<Engine>, Error> {
+        let mut engine = lock(&self.engine);
+        if engine.is_lost() {
+            *engine = Arc::new(Engine::new(self.choice)?);
+        }
+        Ok(Arc::clone(&engine))
+    }
+
+    /// The scene as the device reads it, from the cache where it was used lately.
+    pub(crate) fn contents(&self, scene: &Scene, receivers: &Receivers) -> Result<Arc<SceneContents>, Error> {
+        let mut scenes = lock(&self.scenes);
+        if let Some(at) = scenes.iter().position(|(identity, _)| *identity == scene.identity()) {
+            let known = scenes.remove(at);
+            scenes.extend(known);
+            return Ok(Arc::clone(&scenes[scenes.len() - 1].1));
+        }
+        // Without a vertex the frame is that of the points.
+        let bounds = match receivers {
+            Receivers::Points(points) => points_bounds(points.positions()),
+            Receivers::Camera(_) => None,
+        };
+        let binding = self.engine()?.host().limits.storage_binding_bytes;
+        let contents = Arc::new(SceneContents::new(LocalScene::new(scene, bounds, binding)?));
+        if scene.bounds().is_some() {
+            scenes.push_back((scene.identity(), Arc::clone(&contents)));
+            if scenes.len() > KEPT_SCENES {
+                scenes.pop_front();
+            }
+        }
+        Ok(contents)
+    }
+}
+
+fn points_bounds(points: &[[f64; 3]]) -> Option<([f64; 3], [f64; 3])> {
+    let first = *points.first()?;
+    Some(points.iter().fold((first, first), |(low, high), p| {
+        ([0, 1, 2].map(|k| p[k].min(low[k])), [0, 1, 2].map(|k| p[k].max(high[k])))
+    }))
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,51 @@
+//! What made a result: every result carries it.
+
+use serde::Serialize;
+use softshadow_engine::{AdapterInfo, PassTime, RunReport};
+use softshadow_techniques::Technique;
+
+/// Adapter, technique, cost, and how well the values are known.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Info {
+    /// The device.
+    pub adapter: AdapterInfo,
+    /// The technique and all its settings.
+    pub technique: Technique,
+    /// Lights.
+    pub lights: usize,
+    /// Receivers asked for.
+    pub receivers: usize,
+    /// Receivers that see anything at all.
+    pub valid_receivers: usize,
+    /// Wall time from plan to values in milliseconds.
+    pub wall_ms: f64,
+    /// Time by pass, where the device has a clock.
+    pub pass_ms: Vec<PassTime>,
+    /// Exact bytes on the device by resource.
+    pub bytes: Vec<(String, u64)>,
+    /// Command buffers handed to the device.
+    pub submissions: usize,
+    /// Blocks of receivers.
+    pub blocks: usize,
+    /// Triangles without area, left out.
+    pub zero_area_triangles: usize,
+    /// Triangles that vanish in local float32, left out.
+    pub unresolved_triangles: usize,
+    /// What the scene's file holds that is not modelled.
+    pub notes: Vec<String>,
+    /// `statistical`: values have a standard error. `none`: nothing is known about their error.
+    pub error_kind: &'static str,
+    /// Root mean square of the standard error over valid values, where there is one.
+    pub standard_error: Option<f64>,
+    /// The passes, why each is there, and what each resource weighs.
+    pub plan: String,
+}
+
+impl Info {
+    pub(crate) fn add_run(&mut self, run: RunReport) {
+        self.wall_ms = run.wall_ms;
+        self.pass_ms = run.pass_ms;
+        self.bytes = run.bytes;
+        self.submissions = run.submissions;
+    }
+}

@@ -1,0 +1,336 @@
+//! `visibility`: which fraction of each light every receiver sees.
+
+use std::collections::BTreeMap;
+
+use softshadow_engine::{RunReport, StageReport};
+use softshadow_plan::{Content, ContentKey};
+use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
+use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
+use softshadow_techniques::parts::shading::COLOR;
+use softshadow_techniques::ray_traced::{BLOCKED, STANDARD_ERROR, VISIBILITY};
+use softshadow_techniques::{
+    Block, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
+};
+
+use crate::Progress;
+use crate::context::Context;
+use crate::error::Error;
+use crate::info::Info;
+
+/// What a caller may want beside the values, and how much memory a call may take.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Bytes that receivers and their results may take on the device; receivers are processed in blocks within it.
+    pub memory_limit_bytes: u64,
+    /// Return the standard error of every value.
+    pub standard_error: bool,
+    /// Return the receivers as every technique used them.
+    pub receivers: bool,
+    /// Return which samples were blocked, of the last progressive pass. Only techniques that trace every sample have them.
+    pub sample_masks: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { memory_limit_bytes: 1 << 30, standard_error: false, receivers: false, sample_masks: false }
+    }
+}
+
+/// Visibility of every light from every receiver.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Visibility {
+    /// Number of lights.
+    pub lights: usize,
+    /// Number of receivers.
+    pub receivers: usize,
+    /// 1, or 3 where a light of the call has a texture.
+    pub channels: usize,
+    /// `[width, height]` where a camera was given; receivers are its pixels, row by row.
+    pub image: Option<[u32; 2]>,
+    /// lights × receivers × channels; 1 = fully lit, NaN only where the camera sees nothing.
+    pub values: Vec<f32>,
+    /// Whether each receiver sees anything; false only for pixels of the background.
+    pub valid: Vec<bool>,
+    /// Standard error of each value, where it was asked for and the technique has one.
+    pub standard_error: Option<Vec<f32>>,
+    /// The receivers, where they were asked for.
+    pub placed: Option<Placed>,
+    /// Which samples were blocked, where that was asked for.
+    pub masks: Option<SampleMasks>,
+    /// What made this result.
+    pub info: Info,
+}
+
+/// Receivers as every technique used them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Placed {
+    /// World positions of the stored float32 origins, lifted off their surface.
+    pub positions: Vec<[f64; 3]>,
+    /// Unit normals; zero without.
+    pub normals: Vec<[f32; 3]>,
+    /// The caller's triangle id; −1 without.
+    pub triangles: Vec<i64>,
+}
+
+/// One bit a sample, set where the sample is blocked.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SampleMasks {
+    /// Words of 32 bits a receiver; sample `i` is bit `i % 32` of word `i / 32`.
+    pub words: usize,
+    /// lights × receivers × words.
+    pub bits: Vec<u32>,
+}
+
+/// Computes visibility.
+///
+/// # Errors
+/// Any [`Error`]; the context stays usable.
+pub fn visibility(
+    context: &Context,
+    scene: &Scene,
+    lights: &[Light],
+    receivers: &Receivers,
+    technique: &Technique,
+    options: &Options,
+    on_progress: Progress<'_>,
+) -> Result<Visibility, Error> {
+    Ok(run(context, scene, lights, receivers, technique, options, None, on_progress)?.0)
+}
+
+/// Computes visibility and, with `picture`, linear colour a receiver.
+#[expect(clippy::too_many_arguments, reason = "the union of what its two callers take")]
+pub(crate) fn run(
+    context: &Context,
+    scene: &Scene,
+    lights: &[Light],
+    receivers: &Receivers,
+    technique: &Technique,
+    options: &Options,
+    picture: Option<Shading>,
+    on_progress: Progress<'_>,
+) -> Result<(Visibility, Vec<[f32; 4]>), Error> {
+    technique.check()?;
+    if lights.is_empty() {
+        return Err(Error::Settings("at least one light is needed".into()));
+    }
+    let engine = context.engine()?;
+    let host = engine.host();
+    if let Receivers::Camera(camera) = receivers {
+        let (needed, limit) = (u64::from(camera.size()[0].max(camera.size()[1])), u64::from(host.limits.texture_size));
+        if needed > limit {
+            return Err(Error::TooLarge { what: "pixels of the image's longer side".into(), needed, limit });
+        }
+    }
+    let contents = context.contents(scene, receivers)?;
+    let channels = if lights.iter().any(|l| l.texture().is_some()) { 3 } else { 1 };
+    let mut collector = Collector::new(context, scene, lights, receivers, technique, options, &contents, channels);
+    let sees_nothing = matches!(receivers, Receivers::Camera(_)) && contents.local.sub_scenes.is_empty();
+    if receivers.count() == 0 || sees_nothing {
+        return Ok(collector.finish(RunReport::default()));
+    }
+    let source = match receivers {
+        Receivers::Camera(camera) => ReceiverSource::Camera(camera),
+        Receivers::Points(points) => ReceiverSource::Points(points),
+    };
+    let wants = Wants {
+        standard_error: options.standard_error,
+        receivers: options.receivers,
+        sample_masks: options.sample_masks,
+        picture,
+    };
+    let most = receivers_per_block(technique, options, channels, picture.is_some(), &host, source.row())?;
+    let program = VisibilityProgram {
+        technique,
+        scene: &contents,
+        lights,
+        receivers: source,
+        blocks: blocks(source.count(), source.row(), technique.halo_rows() as usize, most),
+        channels: channels as u32,
+        wants,
+        host,
+    };
+    program.check()?;
+    if let Some(task) = program.task(0) {
+        collector.result.info.plan = program.plan(task).explain();
+    }
+    collector.result.info.blocks = program.blocks.len();
+    let uploads: BTreeMap<ContentKey, Content> = contents.contents().map(|c| (c.key, c.clone())).collect();
+    let total = program.stages() as u64;
+    let mut done = 0;
+    let report = engine.run(&program, &uploads, &mut |stage: Option<StageReport>| {
+        if let (Some(stage), true) = (&stage, true) {
+            done += 1;
+            if let Some(task) = program.task(stage.index) {
+                collector.add(program.blocks[task.block], task.light, &stage.outputs);
+            }
+        }
+        on_progress(done, total)
+    })?;
+    if report.stages as u64 != total {
+        return Err(Error::Gpu(format!("only {} of {total} stages ran", report.stages)));
+    }
+    Ok(collector.finish(report))
+}
+
+/// How many receivers fit the memory limit and the device's bindings.
+fn receivers_per_block(
+    technique: &Technique,
+    options: &Options,
+    channels: usize,
+    picture: bool,
+    host: &softshadow_plan::Host,
+    row: usize,
+) -> Result<usize, Error> {
+    let technique_bytes = technique.bytes_per_receiver(channels as u64);
+    // The receiver, the point it came from, and the picture's colour.
+    let each = 2 * RECEIVER_BYTES + technique_bytes + if picture { 16 } else { 0 };
+    let largest_buffer = technique_bytes.max(RECEIVER_BYTES);
+    let binding = host.limits.storage_binding_bytes.min(host.limits.buffer_bytes);
+    let most = (options.memory_limit_bytes / each).min(binding / largest_buffer).min(1 << 30) as usize;
+    let rows = 1 + 2 * technique.halo_rows() as usize;
+    if most < row * rows {
+        let needed = (row * rows) as u64 * each;
+        let what = format!("bytes for {rows} row(s) of receivers at these settings");
+        return Err(Error::TooLarge {
+            what,
+            needed,
+            limit: options.memory_limit_bytes.min(binding / largest_buffer * each),
+        });
+    }
+    Ok(most)
+}
+
+/// Puts the blocks' outputs where they belong.
+struct Collector<'a> {
+    result: Visibility,
+    colors: Vec<[f32; 4]>,
+    frame: LocalFrame,
+    caller_ids: &'a [u32],
+}
+
+impl<'a> Collector<'a> {
+    #[expect(clippy::too_many_arguments, reason = "everything that a result reports")]
+    fn new(
+        context: &Context,
+        scene: &Scene,
+        lights: &[Light],
+        receivers: &Receivers,
+        technique: &Technique,
+        options: &Options,
+        contents: &'a SceneContents,
+        channels: usize,
+    ) -> Self {
+        let count = receivers.count() as usize;
+        let size = lights.len() * count * channels;
+        let has_error = matches!(technique, Technique::RayTraced(_));
+        let info = Info {
+            adapter: context.adapter().clone(),
+            technique: technique.clone(),
+            lights: lights.len(),
+            receivers: count,
+            valid_receivers: 0,
+            wall_ms: 0.0,
+            pass_ms: Vec::new(),
+            bytes: Vec::new(),
+            submissions: 0,
+            blocks: 0,
+            zero_area_triangles: contents.local.dropped.zero_area,
+            unresolved_triangles: contents.local.dropped.below_resolution,
+            notes: scene.notes().to_vec(),
+            error_kind: if has_error { "statistical" } else { "none" },
+            standard_error: None,
+            plan: String::new(),
+        };
+        let masks = match technique {
+            Technique::RayTraced(settings) if options.sample_masks => {
+                let words = settings.samples.div_ceil(32) as usize;
+                Some(SampleMasks { words, bits: vec![u32::MAX; lights.len() * count * words] })
+            }
+            _ => None,
+        };
+        let placed = options.receivers.then(|| Placed {
+            positions: vec![[f64::NAN; 3]; count],
+            normals: vec![[0.0; 3]; count],
+            triangles: vec![-1; count],
+        });
+        let result = Visibility {
+            lights: lights.len(),
+            receivers: count,
+            channels,
+            image: match receivers {
+                Receivers::Camera(camera) => Some(camera.size()),
+                Receivers::Points(_) => None,
+            },
+            values: vec![f32::NAN; size],
+            valid: vec![false; count],
+            standard_error: (options.standard_error && has_error).then(|| vec![f32::NAN; size]),
+            placed,
+            masks,
+            info,
+        };
+        Self { result, colors: Vec::new(), frame: contents.local.frame, caller_ids: &contents.local.caller_ids }
+    }
+
+    fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Vec<u8>>) {
+        let start = block.first + block.skip;
+        if let Some(bytes) = outputs.get(RECEIVERS) {
+            let records: Vec<Receiver> = bytemuck::pod_collect_to_vec(bytes);
+            for (index, record) in (start..).zip(&records[block.skip..block.skip + block.keep]) {
+                self.add_receiver(index, record);
+            }
+        }
+        let (count, channels) = (self.result.receivers, self.result.channels);
+        let copy = |label: &str, width: usize, into: &mut [f32]| {
+            let Some(bytes) = outputs.get(label) else { return };
+            let values: Vec<f32> = bytemuck::pod_collect_to_vec(bytes);
+            let at = (light * count + start) * width;
+            into[at..at + block.keep * width]
+                .copy_from_slice(&values[block.skip * width..(block.skip + block.keep) * width]);
+        };
+        copy(VISIBILITY, channels, &mut self.result.values);
+        if let Some(errors) = &mut self.result.standard_error {
+            copy(STANDARD_ERROR, channels, errors);
+        }
+        if let (Some(masks), Some(bytes)) = (&mut self.result.masks, outputs.get(BLOCKED)) {
+            let words: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+            let at = (light * count + start) * masks.words;
+            masks.bits[at..at + block.keep * masks.words]
+                .copy_from_slice(&words[block.skip * masks.words..(block.skip + block.keep) * masks.words]);
+        }
+        if let Some(bytes) = outputs.get(COLOR) {
+            let colors: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(bytes);
+            self.colors.resize(count, [0.0; 4]);
+            self.colors[start..start + block.keep].copy_from_slice(&colors[block.skip..block.skip + block.keep]);
+        }
+    }
+
+    fn add_receiver(&mut self, index: usize, record: &Receiver) {
+        self.result.valid[index] = record.kind != 0;
+        let Some(placed) = self.result.placed.as_mut().filter(|_| record.kind != 0) else { return };
+        placed.positions[index] = self.frame.world_from_local(record.position);
+        placed.normals[index] = record.normal;
+        placed.triangles[index] = self.caller_ids.get(record.triangle as usize).map_or(-1, |id| i64::from(*id));
+    }
+
+    fn finish(mut self, report: RunReport) -> (Visibility, Vec<[f32; 4]>) {
+        let (count, channels) = (self.result.receivers, self.result.channels);
+        let valid = &self.result.valid;
+        let is_valid = |position: usize| valid[position / channels % count];
+        // A value where there is no receiver would be a number that nobody measured.
+        let blank = |values: &mut [f32]| {
+            values.iter_mut().enumerate().filter(|(i, _)| !is_valid(*i)).for_each(|(_, v)| *v = f32::NAN);
+        };
+        blank(&mut self.result.values);
+        if let Some(errors) = &mut self.result.standard_error {
+            blank(errors);
+            let known: Vec<f64> = errors.iter().filter(|e| !e.is_nan()).map(|e| f64::from(*e)).collect();
+            if !known.is_empty() {
+                let mean_square = known.iter().map(|e| e * e).sum::<f64>() / known.len() as f64;
+                self.result.info.standard_error = Some(mean_square.sqrt());
+            }
+        }
+        self.result.info.valid_receivers = valid.iter().filter(|v| **v).count();
+        self.result.info.add_run(report);
+        (self.result, self.colors)
+    }
+}

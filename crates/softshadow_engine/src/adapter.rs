@@ -1,0 +1,178 @@
+//! Finding an adapter by what it is, never by its name: two drivers of one machine may carry the same.
+
+use std::sync::{Arc, Mutex};
+
+use serde::Serialize;
+use softshadow_plan::{Features, Host, Limits};
+
+use crate::error::EngineError;
+
+/// What kind of device stands behind an adapter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DeviceKind {
+    /// A graphics processor.
+    Gpu,
+    /// A driver that runs on the CPU.
+    Software,
+    /// wgpu's backend that validates and computes nothing.
+    Noop,
+}
+
+/// What is known about an adapter.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct AdapterInfo {
+    /// Position in [`adapters`].
+    pub index: usize,
+    /// The driver's name for it.
+    pub name: String,
+    /// Graphics interface: `vulkan`, `gl`, `metal`, `dx12` or `noop`.
+    pub backend: String,
+    /// Kind of device.
+    pub device_type: DeviceKind,
+    /// Driver and its version.
+    pub driver: String,
+    /// Largest storage binding in bytes.
+    pub storage_binding_bytes: u64,
+    /// Largest width of a texture.
+    pub texture_size: u32,
+    /// Optional abilities that the library can use.
+    pub features: Vec<&'static str>,
+}
+
+/// Which adapter to take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AdapterChoice {
+    /// A GPU, else a software driver.
+    Auto,
+    /// A GPU.
+    Gpu,
+    /// A software driver.
+    Software,
+    /// The adapter with this position in [`adapters`].
+    Index(usize),
+    /// wgpu's backend without a driver, for tests.
+    Noop,
+}
+
+/// An open device, with what went wrong on it.
+pub(crate) struct Opened {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    pub(crate) info: AdapterInfo,
+    pub(crate) host: Host,
+    /// Set when the device is lost, with the driver's words.
+    pub(crate) lost: Arc<Mutex<Option<String>>>,
+    /// The first error that no scope caught.
+    pub(crate) uncaught: Arc<Mutex<Option<String>>>,
+}
+
+/// Every adapter of this machine, Vulkan, Metal and Direct3D before GL.
+#[must_use]
+pub fn adapters() -> Vec<AdapterInfo> {
+    let (_, found) = enumerate(false);
+    found.iter().enumerate().map(|(index, adapter)| describe(index, adapter)).collect()
+}
+
+fn enumerate(noop: bool) -> (wgpu::Instance, Vec<wgpu::Adapter>) {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::PRIMARY | wgpu::Backends::GL;
+    if noop {
+        descriptor.backends = wgpu::Backends::NOOP;
+        descriptor.backend_options.noop = wgpu::NoopBackendOptions::enabled();
+    }
+    let backends = descriptor.backends;
+    let instance = wgpu::Instance::new(descriptor);
+    let mut found = pollster::block_on(instance.enumerate_adapters(backends));
+    found.sort_by_key(|adapter| adapter.get_info().backend == wgpu::Backend::Gl);
+    (instance, found)
+}
+
+pub(crate) fn open(choice: AdapterChoice) -> Result<Opened, EngineError> {
+    let (_instance, found) = enumerate(choice == AdapterChoice::Noop);
+    let kinds: Vec<DeviceKind> = found.iter().map(|a| kind(&a.get_info())).collect();
+    let first = |wanted| kinds.iter().position(|k| *k == wanted);
+    let (index, wanted) = match choice {
+        AdapterChoice::Auto => {
+            (first(DeviceKind::Gpu).or_else(|| first(DeviceKind::Software)), "GPU or software".into())
+        }
+        AdapterChoice::Gpu => (first(DeviceKind::Gpu), "GPU".into()),
+        AdapterChoice::Software => (first(DeviceKind::Software), "software".into()),
+        AdapterChoice::Index(index) => ((index < found.len()).then_some(index), format!("number {index}")),
+        AdapterChoice::Noop => (first(DeviceKind::Noop), "noop".into()),
+    };
+    let Some(index) = index else { return Err(EngineError::NoAdapter { wanted }) };
+    let adapter = &found[index];
+    let info = describe(index, adapter);
+    let descriptor = wgpu::DeviceDescriptor {
+        label: Some("softshadow"),
+        required_features: adapter.features() & optional_features(),
+        required_limits: adapter.limits(),
+        ..Default::default()
+    };
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        .map_err(|error| EngineError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
+    let lost = Arc::new(Mutex::new(None));
+    let uncaught = Arc::new(Mutex::new(None));
+    let lost_slot = Arc::clone(&lost);
+    device.set_device_lost_callback(move |reason, words| {
+        if let Ok(mut slot) = lost_slot.lock() {
+            slot.get_or_insert(format!("{reason:?}: {words}"));
+        }
+    });
+    // wgpu's own handler panics.
+    let uncaught_slot = Arc::clone(&uncaught);
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        if let Ok(mut slot) = uncaught_slot.lock() {
+            slot.get_or_insert(error.to_string());
+        }
+    }));
+    let host = host(&device);
+    Ok(Opened { device, queue, info, host, lost, uncaught })
+}
+
+fn optional_features() -> wgpu::Features {
+    wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::FLOAT32_BLENDABLE
+}
+
+fn host(device: &wgpu::Device) -> Host {
+    let (limits, features) = (device.limits(), device.features());
+    Host {
+        limits: Limits {
+            storage_binding_bytes: limits.max_storage_buffer_binding_size,
+            buffer_bytes: limits.max_buffer_size,
+            texture_size: limits.max_texture_dimension_2d,
+            texture_layers: limits.max_texture_array_layers,
+            groups: limits.max_compute_workgroups_per_dimension,
+            storage_buffers: limits.max_storage_buffers_per_shader_stage,
+            color_targets: limits.max_color_attachments,
+        },
+        features: Features { raster: true, float32_blendable: features.contains(wgpu::Features::FLOAT32_BLENDABLE) },
+    }
+}
+
+fn kind(info: &wgpu::AdapterInfo) -> DeviceKind {
+    match (info.backend, info.device_type) {
+        (wgpu::Backend::Noop, _) => DeviceKind::Noop,
+        (_, wgpu::DeviceType::Cpu) => DeviceKind::Software,
+        _ => DeviceKind::Gpu,
+    }
+}
+
+fn describe(index: usize, adapter: &wgpu::Adapter) -> AdapterInfo {
+    let (info, limits, features) = (adapter.get_info(), adapter.limits(), adapter.features());
+    let named = [
+        ("timestamp-query", wgpu::Features::TIMESTAMP_QUERY),
+        ("float32-blendable", wgpu::Features::FLOAT32_BLENDABLE),
+    ];
+    AdapterInfo {
+        index,
+        name: info.name.clone(),
+        backend: info.backend.to_str().to_owned(),
+        device_type: kind(&info),
+        driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        storage_binding_bytes: limits.max_storage_buffer_binding_size,
+        texture_size: limits.max_texture_dimension_2d,
+        features: named.iter().filter(|(_, f)| features.contains(*f)).map(|(name, _)| *name).collect(),
+    }
+}

@@ -1,0 +1,82 @@
+//! Meshes in world space.
+
+use std::path::PathBuf;
+
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use softshadow::{Error, Material, Mesh};
+
+use crate::arrays::rows;
+use crate::detached::detached;
+
+/// Name, flat vertices, flat faces, base colour, roughness, specular.
+type FlatMesh<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, [f32; 3], f32, f32);
+
+/// A checked scene.
+#[pyclass(frozen, module = "softshadow._core")]
+pub(crate) struct Scene(pub(crate) softshadow::Scene);
+
+/// One mesh as Python gives it.
+#[derive(FromPyObject)]
+struct MeshArrays<'py>(String, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, u32>, [f32; 3], f32, f32);
+
+#[pymethods]
+impl Scene {
+    #[new]
+    fn new(py: Python<'_>, meshes: Vec<MeshArrays<'_>>, notes: Vec<String>) -> PyResult<Self> {
+        let copies = meshes
+            .into_iter()
+            .map(|MeshArrays(name, vertices, faces, base_color, roughness, specular)| {
+                let material = Material { base_color, roughness, specular };
+                Ok((name, rows(&vertices)?, rows(&faces)?, material))
+            })
+            .collect::<PyResult<Vec<_>>>()?;
+        detached(py, || {
+            let meshes =
+                copies.into_iter().map(|(name, vertices, faces, material)| Mesh::new(name, vertices, faces, material));
+            let scene = meshes.collect::<Result<_, _>>().and_then(softshadow::Scene::new).map_err(Error::Scene)?;
+            Ok(Self(notes.into_iter().fold(scene, softshadow::Scene::with_note)))
+        })
+    }
+
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        detached(py, || softshadow::scene_file::load(&path).map(Self).map_err(Error::Scene))
+    }
+
+    /// Copies of all meshes.
+    fn meshes<'py>(&self, py: Python<'py>) -> Vec<FlatMesh<'py>> {
+        let flat = |mesh: &Mesh| {
+            let Material { base_color, roughness, specular } = mesh.material;
+            let vertices = mesh.vertices.as_flattened().to_vec().into_pyarray(py);
+            let faces = mesh.triangles.as_flattened().to_vec().into_pyarray(py);
+            (mesh.name.clone(), vertices, faces, base_color, roughness, specular)
+        };
+        self.0.meshes().iter().map(flat).collect()
+    }
+
+    /// What a file held that is left out.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.0.notes().to_vec()
+    }
+
+    /// Corners of the smallest box around all vertices.
+    #[getter]
+    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        self.0.bounds()
+    }
+
+    /// Degenerate triangles included.
+    #[getter]
+    fn triangle_count(&self) -> usize {
+        self.0.triangle_count()
+    }
+}
+
+/// Base colour, roughness and specular of a mesh that has no material.
+#[pyfunction]
+pub(crate) fn default_material() -> ([f32; 3], f32, f32) {
+    let Material { base_color, roughness, specular } = Material::default();
+    (base_color, roughness, specular)
+}

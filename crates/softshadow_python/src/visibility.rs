@@ -1,0 +1,159 @@
+//! Visibility and pictures.
+
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use softshadow::{Options, PictureOptions, Points, Receivers, Shading};
+
+use crate::arrays::rows;
+use crate::camera::Camera;
+use crate::context::Context;
+use crate::detached::detached_with_progress;
+use crate::errors::{internal_exception, scene_exception};
+use crate::light::Light;
+use crate::scene::Scene;
+use crate::technique::{json, parse_technique};
+
+/// Flat arrays; Python gives them their shape.
+#[derive(IntoPyObject)]
+pub(crate) struct VisibilityArrays<'py> {
+    values: Bound<'py, PyArray1<f32>>,
+    channels: usize,
+    valid: Bound<'py, PyArray1<bool>>,
+    standard_error: Option<Bound<'py, PyArray1<f32>>>,
+    placed: Option<PlacedArrays<'py>>,
+    info: String,
+}
+
+#[derive(IntoPyObject)]
+struct PlacedArrays<'py> {
+    positions: Bound<'py, PyArray1<f64>>,
+    normals: Bound<'py, PyArray1<f32>>,
+    triangles: Bound<'py, PyArray1<i64>>,
+}
+
+#[derive(IntoPyObject)]
+pub(crate) struct PictureArrays<'py> {
+    linear: Bound<'py, PyArray1<f32>>,
+    srgb: Bound<'py, PyArray1<u8>>,
+    visibility: VisibilityArrays<'py>,
+    info: String,
+}
+
+impl<'py> VisibilityArrays<'py> {
+    fn new(py: Python<'py>, visibility: softshadow::Visibility) -> PyResult<Self> {
+        Ok(Self {
+            info: json(&visibility.info)?,
+            values: visibility.values.into_pyarray(py),
+            channels: visibility.channels,
+            valid: visibility.valid.into_pyarray(py),
+            standard_error: visibility.standard_error.map(|values| values.into_pyarray(py)),
+            placed: visibility.placed.map(|placed| PlacedArrays {
+                positions: placed.positions.into_flattened().into_pyarray(py),
+                normals: placed.normals.into_flattened().into_pyarray(py),
+                triangles: placed.triangles.into_pyarray(py),
+            }),
+        })
+    }
+}
+
+/// What a caller asks for besides scene, lights and technique; `None` leaves the library's default.
+fn options(memory_limit: Option<u64>, standard_error: bool, receivers: bool) -> Options {
+    let default = Options::default();
+    let memory_limit_bytes = memory_limit.unwrap_or(default.memory_limit_bytes);
+    Options { memory_limit_bytes, standard_error, receivers, ..default }
+}
+
+/// A camera, or else points with or without normals.
+pub(crate) fn receivers_of(
+    camera: Option<&Bound<'_, Camera>>,
+    points: Option<&PyReadonlyArray2<'_, f64>>,
+    normals: Option<&PyReadonlyArray2<'_, f64>>,
+) -> PyResult<Receivers> {
+    match (camera, points) {
+        (Some(camera), None) => Ok(Receivers::Camera(camera.get().0)),
+        (None, Some(points)) => {
+            let points = Points::new(rows(points)?, normals.map(rows).transpose()?);
+            points.map(Receivers::Points).map_err(|error| scene_exception(&error))
+        }
+        _ => Err(internal_exception("either a camera or points expected".into())),
+    }
+}
+
+fn lights_of(lights: &[Py<Light>]) -> Vec<softshadow::Light> {
+    lights.iter().map(|light| light.get().0.clone()).collect()
+}
+
+/// The lit fraction of every light at every receiver.
+#[pyfunction]
+#[pyo3(signature = (context, scene, lights, *, camera, points, normals, technique, memory_limit, standard_error, receivers, progress))]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
+pub(crate) fn visibility<'py>(
+    py: Python<'py>,
+    context: &Bound<'py, Context>,
+    scene: &Bound<'py, Scene>,
+    lights: Vec<Py<Light>>,
+    camera: Option<Bound<'py, Camera>>,
+    points: Option<PyReadonlyArray2<'py, f64>>,
+    normals: Option<PyReadonlyArray2<'py, f64>>,
+    technique: &str,
+    memory_limit: Option<u64>,
+    standard_error: bool,
+    receivers: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<VisibilityArrays<'py>> {
+    let (context, scene, lights) = (context.get().get()?, &scene.get().0, lights_of(&lights));
+    let technique = parse_technique(technique)?;
+    let options = options(memory_limit, standard_error, receivers);
+    let receivers = receivers_of(camera.as_ref(), points.as_ref(), normals.as_ref())?;
+    let result = detached_with_progress(py, progress, |on_progress| {
+        softshadow::visibility(context, scene, &lights, &receivers, &technique, &options, on_progress)
+    })?;
+    VisibilityArrays::new(py, result)
+}
+
+/// A picture of the scene under its lights.
+#[pyfunction]
+#[pyo3(signature = (context, scene, lights, *, camera, technique, shading, exposure, background, memory_limit, progress))]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
+pub(crate) fn render<'py>(
+    py: Python<'py>,
+    context: &Bound<'py, Context>,
+    scene: &Bound<'py, Scene>,
+    lights: Vec<Py<Light>>,
+    camera: &Bound<'py, Camera>,
+    technique: &str,
+    shading: &str,
+    exposure: f32,
+    background: Option<[f32; 3]>,
+    memory_limit: Option<u64>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<PictureArrays<'py>> {
+    let (context, scene, lights) = (context.get().get()?, &scene.get().0, lights_of(&lights));
+    let (camera, technique) = (camera.get().0, parse_technique(technique)?);
+    let default = PictureOptions::default();
+    let options = PictureOptions {
+        shading: shading_of(shading)?,
+        exposure,
+        background: background.unwrap_or(default.background),
+        options: options(memory_limit, default.options.standard_error, default.options.receivers),
+    };
+    let (picture, srgb) = detached_with_progress(py, progress, |on_progress| {
+        let picture = softshadow::render(context, scene, &lights, &camera, &technique, &options, on_progress)?;
+        let srgb = picture.srgb8();
+        Ok((picture, srgb))
+    })?;
+    Ok(PictureArrays {
+        info: json(&picture.info)?,
+        linear: picture.linear.into_flattened().into_pyarray(py),
+        srgb: srgb.into_pyarray(py),
+        visibility: VisibilityArrays::new(py, picture.visibility)?,
+    })
+}
+
+fn shading_of(name: &str) -> PyResult<Shading> {
+    match name {
+        "integrated" => Ok(Shading::Integrated),
+        "modulated" => Ok(Shading::Modulated),
+        _ => Err(internal_exception(format!("unknown shading '{name}'"))),
+    }
+}

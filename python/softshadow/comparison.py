@@ -1,0 +1,120 @@
+"""Techniques against a reference: error and time."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from . import _core
+from .camera import Camera
+from .checks import whole
+from .device import Device, context
+from .errors import SceneError, SettingsError
+from .lights import Light
+from .scene import Scene
+from .techniques import RayTraced, Technique, technique_json
+from .visibility import Progress, callback, receivers_of, scene_of
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Comparison:
+    """The result of :func:`compare`; printing it shows a table.
+
+    Attributes
+    ----------
+    rows : list of dict
+        One a technique, in the order given: settings, error metrics and milliseconds.
+    reference : dict
+        What made the reference.
+    """
+
+    rows: list[dict[str, Any]]
+    reference: dict[str, Any]
+
+    def to_json(self) -> str:
+        """All numbers as JSON."""
+        return json.dumps({"reference": self.reference, "rows": self.rows}, indent=2)
+
+    def __str__(self) -> str:
+        flat = [_flat(row) for row in self.rows]
+        columns = list(dict.fromkeys(name for row in flat for name in row))
+        table = [columns] + [[_cell(row.get(name)) for name in columns] for row in flat]
+        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+        return "\n".join("  ".join(map(str.rjust, line, widths)) for line in table)
+
+    def __repr__(self) -> str:
+        return f"<Comparison of {len(self.rows)} techniques>"
+
+
+def compare(
+    scene: Scene,
+    light: Light,
+    *,
+    camera: Camera | None = None,
+    points: ArrayLike | None = None,
+    normals: ArrayLike | None = None,
+    techniques: Sequence[Technique],
+    reference: Technique = RayTraced(samples=4096),  # noqa: B008 - frozen
+    repeats: int = 3,
+    device: Device | str = "auto",
+    progress: Progress | None = None,
+) -> Comparison:
+    """Error and time of techniques on the same receivers.
+
+    Parameters
+    ----------
+    scene, light, camera, points, normals, device, progress
+        As in :func:`visibility`; one light.
+    techniques : list of techniques
+        What is judged.
+    reference : technique
+        What it is judged by.
+    repeats : int
+        Timed runs of each technique after a warm-up, in turn; the time is their median.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    SceneError, SettingsError, TooLargeError, NoAdapterError, GpuError, Interrupted
+        As :func:`visibility`.
+    """
+    if not isinstance(light, Light):
+        raise SceneError(f"light: one light expected, got {light!r:.80}")
+    if not isinstance(techniques, (list, tuple)) or not techniques:
+        raise SettingsError(f"techniques: a list of at least one technique expected, got {techniques!r:.80}")
+    where = receivers_of(camera, points, normals)
+    text = _core.compare(
+        context(device),
+        scene_of(scene),
+        light._built(),
+        **where.arguments,
+        techniques=[technique_json(f"techniques[{i}]", technique) for i, technique in enumerate(techniques)],
+        reference=technique_json("reference", reference),
+        repeats=whole("repeats", repeats, low=1),
+        progress=callback(progress),
+    )
+    result = json.loads(text)
+    return Comparison(rows=result["rows"], reference=result["reference"])
+
+
+def _flat(row: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    cells: dict[str, Any] = {}
+    for name, value in row.items():
+        if isinstance(value, dict):
+            cells |= _flat(value, f"{prefix}{name}.")
+        elif not isinstance(value, list):
+            cells[prefix + name] = value
+    return cells
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return "-"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,133 @@
+"""Pictures: direct light times visibility."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .camera import Camera
+from .checks import choice, color, real, whole
+from .device import Device, context
+from .errors import SettingsError
+from .files import png_or_npy, write
+from .lights import Light, built_lights
+from .scene import Scene
+from .techniques import RayTraced, Technique, technique_json
+from .visibility import Progress, Visibility, callback, receivers_of, scene_of, shaped
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Picture:
+    """The result of :func:`render`.
+
+    Attributes
+    ----------
+    linear : float32, (H, W, 3)
+        Reflected radiance, linear red, green, blue, before exposure.
+    srgb : uint8, (H, W, 3)
+        Exposed, clipped and encoded for display.
+    visibility : Visibility
+        The visibility that the picture was made of, with a first axis of lights where a list was given.
+    info : dict
+        What made the result: adapter, technique, settings, times and bytes.
+    """
+
+    linear: NDArray[np.float32]
+    srgb: NDArray[np.uint8]
+    visibility: Visibility
+    info: dict[str, Any]
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes ``.png`` (sRGB) or ``.npy`` (the linear colours).
+
+        Raises
+        ------
+        SettingsError
+            For another extension.
+        OSError
+            Where the file cannot be written.
+        """
+        write(path, self._repr_png_() if png_or_npy(path) == "png" else self.linear)
+
+    def _repr_png_(self) -> bytes:
+        height, width, _ = self.srgb.shape
+        return _core.png_srgb8(self.srgb.ravel(), (width, height))
+
+    def __repr__(self) -> str:
+        height, width, _ = self.srgb.shape
+        return f"<Picture of {width} × {height} pixels>"
+
+
+def render(
+    scene: Scene,
+    lights: Light | Sequence[Light],
+    *,
+    camera: Camera,
+    technique: Technique = RayTraced(),  # noqa: B008 - frozen
+    shading: str = "integrated",
+    exposure: float = 0.0,
+    background: ArrayLike | None = None,
+    device: Device | str = "auto",
+    memory_limit: int | None = None,
+    progress: Progress | None = None,
+) -> Picture:
+    """A picture of the scene under direct light.
+
+    Parameters
+    ----------
+    scene : Scene
+        Meshes with their base colours.
+    lights : light or list of lights
+        Their contributions are added.
+    camera : Camera
+        The view.
+    technique : RayTraced or HardShadowMap
+        How visibility is computed.
+    shading : {"integrated", "modulated"}
+        Light summed over the samples that are visible, or the unshadowed sum times visibility.
+    exposure : float
+        In stops: each doubles the brightness. Applies to `Picture.srgb` alone.
+    background : (3,) float, optional
+        Linear colour where the camera sees nothing.
+    device, memory_limit, progress
+        As in :func:`visibility`.
+
+    Returns
+    -------
+    Picture
+
+    Raises
+    ------
+    SceneError, SettingsError, TooLargeError, NoAdapterError, GpuError, Interrupted
+        As :func:`visibility`.
+    """
+    built, several = built_lights(lights)
+    where = receivers_of(camera, None, None)
+    stops = real("exposure", exposure, SettingsError)
+    if not np.isfinite(stops):
+        raise SettingsError(f"exposure: must be finite, got {exposure}")
+    arrays = _core.render(
+        context(device),
+        scene_of(scene),
+        built,
+        camera=where.arguments["camera"],
+        technique=technique_json("technique", technique),
+        shading=choice("shading", shading, ("integrated", "modulated")),
+        exposure=stops,
+        background=None if background is None else color("background", background),
+        memory_limit=None if memory_limit is None else whole("memory_limit", memory_limit, low=1, high=2**64 - 1),
+        progress=callback(progress),
+    )
+    return Picture(
+        linear=arrays["linear"].reshape(*where.shape, 3),
+        srgb=arrays["srgb"].reshape(*where.shape, 3),
+        visibility=shaped(arrays["visibility"], (len(built),) if several else (), where.shape),
+        info=json.loads(arrays["info"]),
+    )

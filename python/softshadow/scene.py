@@ -1,0 +1,231 @@
+"""Scenes: what casts shadows and receives them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .by_value import ByValue, set_fields
+from .checks import color, floats, frozen, integers, real
+from .errors import SceneError
+
+if TYPE_CHECKING:
+    import trimesh
+
+_BASE_COLOR, _ROUGHNESS, _SPECULAR = _core.default_material()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Mesh(ByValue):
+    """Triangles in world space, two-sided; open, non-manifold and inconsistently wound ones are welcome.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float
+        World coordinates.
+    faces : (m, 3) int
+        Vertex indices.
+    name : str
+        What error messages call it.
+    base_color : (3,) float
+        Linear reflectance in 0..1; only pictures use it, as `roughness` and `specular`.
+    roughness, specular : float
+        Of the glossy lobe; a specular of 0 leaves a matte surface.
+
+    Raises
+    ------
+    SceneError
+        For a wrong dtype or shape, and for an index out of range.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.uint32]
+    name: str = "mesh"
+    base_color: tuple[float, float, float] = _BASE_COLOR
+    roughness: float = _ROUGHNESS
+    specular: float = _SPECULAR
+
+    def __post_init__(self) -> None:
+        what = f"mesh '{self.name}'"
+        vertices = floats(f"{what} vertices", self.vertices, ("n", 3))
+        faces = integers(f"{what} faces", self.faces, ("m", 3))
+        outside = (faces < 0) | (faces >= len(vertices))
+        if outside.any():
+            triangle, corner = (int(i) for i in np.argwhere(outside)[0])
+            vertex = faces[triangle, corner]
+            raise SceneError(
+                f"{what}: triangle {triangle} refers to vertex {vertex}, but there are {len(vertices)} vertices"
+            )
+        set_fields(
+            self,
+            name=str(self.name),
+            vertices=frozen(vertices),
+            faces=frozen(faces.astype(np.uint32)),
+            base_color=color(f"{what} base_color", self.base_color),
+            roughness=real(f"{what} roughness", self.roughness),
+            specular=real(f"{what} specular", self.specular),
+        )
+
+    def __repr__(self) -> str:
+        return f"<Mesh {self.name!r}: {len(self.vertices)} vertices, {len(self.faces)} triangles>"
+
+
+class Scene:
+    """Meshes in world space: a description that can be pickled and shared by threads.
+
+    Parameters
+    ----------
+    meshes : iterable of Mesh
+        Triangle ids count through them in order.
+
+    Raises
+    ------
+    SceneError
+        For coordinates that are not finite, with the mesh's name and the first bad index.
+    TooLargeError
+        For more triangles than a scene may have.
+    """
+
+    __slots__ = ("_meshes", "_notes", "_core_scene")
+
+    def __init__(self, meshes: Iterable[Mesh] = (), *, notes: Iterable[str] = ()) -> None:
+        self._meshes: tuple[Mesh, ...] | None = tuple(meshes)
+        self._notes = tuple(notes)
+        if not all(isinstance(mesh, Mesh) for mesh in self._meshes):
+            raise SceneError("scene: an iterable of Mesh expected; see Scene.from_arrays")
+        self._core_scene: _core.Scene | None = _built(self._meshes, self._notes)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Scene:
+        """Reads a ``.glb``, ``.gltf`` or ``.obj`` file. What the library does not model is listed in :attr:`notes`.
+
+        Raises
+        ------
+        SceneFileNotFound
+            Where there is no such file; also a ``FileNotFoundError``.
+        SceneError
+            For an unknown format and a broken file.
+        """
+        try:
+            name = os.fspath(path)
+        except TypeError:
+            raise SceneError(f"scene: a path expected, got {path!r:.80}") from None
+        return cls._from_core(_core.Scene.load(name))
+
+    @classmethod
+    def _from_core(cls, built: _core.Scene) -> Scene:
+        scene = cls.__new__(cls)
+        scene._meshes, scene._notes, scene._core_scene = None, tuple(built.notes), built
+        return scene
+
+    @classmethod
+    def from_arrays(
+        cls,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        *,
+        name: str = "mesh",
+        base_color: ArrayLike = _BASE_COLOR,
+    ) -> Scene:
+        """A scene of one mesh.
+
+        Parameters
+        ----------
+        vertices : (n, 3) float
+            World coordinates, float32 or float64; copied.
+        faces : (m, 3) int
+            Vertex indices; copied.
+        name : str
+            What error messages call the mesh.
+        base_color : (3,) float
+            Linear reflectance in 0..1.
+
+        Raises
+        ------
+        SceneError
+            For a wrong dtype or shape, coordinates that are not finite, and indices out of range.
+        """
+        arrays: Any = {"vertices": vertices, "faces": faces, "base_color": base_color}
+        return cls([Mesh(name=name, **arrays)])
+
+    @classmethod
+    def from_trimesh(cls, source: trimesh.Trimesh | trimesh.Scene) -> Scene:
+        """A scene from trimesh, which is read and never changed: nothing is merged, repaired or cached.
+
+        Every instance of a scene's graph becomes a mesh of its own, with its transform applied and its node's name.
+        Base colours are taken where one material or one colour covers a mesh; what is left out is listed in
+        :attr:`notes`.
+
+        Raises
+        ------
+        SceneError
+            For anything but a ``Trimesh`` or a ``trimesh.Scene``, and as :meth:`from_arrays`.
+        """
+        from .trimesh_reader import read
+
+        meshes, notes = read(source)
+        return cls(meshes, notes=notes)
+
+    @property
+    def meshes(self) -> tuple[Mesh, ...]:
+        """The meshes in order; their arrays are read-only copies."""
+        if self._meshes is None:
+            self._meshes = _copied(self._built())
+        return self._meshes
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a source held that the library does not model, in words."""
+        return self._notes
+
+    @property
+    def bounds(self) -> NDArray[np.float64] | None:
+        """(2, 3) float: lower and upper corner around all vertices; None where there are none."""
+        bounds = self._built().bounds
+        return None if bounds is None else np.array(bounds)
+
+    @property
+    def triangle_count(self) -> int:
+        """How many triangles there are, degenerate ones included."""
+        return self._built().triangle_count
+
+    def _built(self) -> _core.Scene:
+        """The scene of the core, made again after unpickling."""
+        if self._core_scene is None:
+            self._core_scene = _built(self.meshes, self._notes)
+        return self._core_scene
+
+    def __getstate__(self) -> tuple[tuple[Mesh, ...], tuple[str, ...]]:
+        return self.meshes, self._notes
+
+    def __setstate__(self, state: tuple[tuple[Mesh, ...], tuple[str, ...]]) -> None:
+        self._meshes, self._notes = state
+        self._core_scene = None
+
+    def __repr__(self) -> str:
+        return f"<Scene: {len(self.meshes)} meshes, {self.triangle_count} triangles>"
+
+
+def _built(meshes: tuple[Mesh, ...], notes: tuple[str, ...]) -> _core.Scene:
+    rows = [(m.name, m.vertices, m.faces, m.base_color, m.roughness, m.specular) for m in meshes]
+    return _core.Scene(rows, list(notes))
+
+
+def _copied(scene: _core.Scene) -> tuple[Mesh, ...]:
+    return tuple(
+        Mesh(
+            name=name,
+            vertices=vertices.reshape(-1, 3),
+            faces=faces.reshape(-1, 3),
+            base_color=base_color,
+            roughness=roughness,
+            specular=specular,
+        )
+        for name, vertices, faces, base_color, roughness, specular in scene.meshes()
+    )

@@ -1,0 +1,98 @@
+"""Shadow techniques and their settings. Defaults and ranges are the library's own, read when this module is imported."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, fields
+from typing import Any, ClassVar
+
+from . import _core
+from .by_value import set_fields
+from .checks import whole
+from .errors import SettingsError
+
+_DEFAULTS: dict[str, dict[str, Any]] = {row["name"]: row for row in json.loads(_core.technique_defaults())}
+_RAY_TRACED = _DEFAULTS["ray_traced"]
+_HARD_SHADOW_MAP = _DEFAULTS["hard_shadow_map"]
+
+
+@dataclass(frozen=True)
+class Technique:
+    """Base of all techniques: settings without behaviour."""
+
+    name: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.type == "int":
+                set_fields(self, **{field.name: whole(f"{self.name} {field.name}", value)})
+            elif not isinstance(value, str):
+                raise SettingsError(f"{self.name} {field.name}: a name expected, got {value!r}")
+        _core.check_technique(self.to_json())
+
+    def to_json(self) -> str:
+        """Name and settings as one JSON object."""
+        return json.dumps({"name": self.name, **asdict(self)})
+
+
+@dataclass(frozen=True, kw_only=True)
+class RayTraced(Technique):
+    """Shadow rays to samples of the light: unbiased, with a standard error.
+
+    Parameters
+    ----------
+    samples : int
+        Light samples a receiver.
+    pattern : {"stratified", "low_discrepancy"}
+        How the light is sampled.
+    seed : int
+        Another seed, another set of samples; the same seed, the same result.
+    passes : int
+        Sets of samples that are averaged, each with a seed of its own.
+    probes : int
+        Samples that are traced first; all others follow only where the neighbourhood disagrees. 0 traces all.
+
+    Raises
+    ------
+    SettingsError
+        For a setting outside its range.
+    """
+
+    name: ClassVar[str] = "ray_traced"
+    samples: int = _RAY_TRACED["samples"]
+    pattern: str = _RAY_TRACED["pattern"]
+    seed: int = _RAY_TRACED["seed"]
+    passes: int = _RAY_TRACED["passes"]
+    probes: int = _RAY_TRACED["probes"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class HardShadowMap(Technique):
+    """One depth map from the light's centre (Williams 1978): fast, and without penumbra.
+
+    Parameters
+    ----------
+    resolution : int
+        Width and height of the depth map in texels.
+
+    Raises
+    ------
+    SettingsError
+        For a setting outside its range.
+    """
+
+    name: ClassVar[str] = "hard_shadow_map"
+    resolution: int = _HARD_SHADOW_MAP["resolution"]
+
+
+TECHNIQUES: dict[str, type[Technique]] = {kind.name: kind for kind in (RayTraced, HardShadowMap)}
+"""Every technique by its name."""
+
+
+def technique_json(what: str, technique: object) -> str:
+    """A technique as the core reads it."""
+    if isinstance(technique, Technique):
+        return technique.to_json()
+    names = ", ".join(kind.__name__ for kind in TECHNIQUES.values())
+    raise SettingsError(f"{what}: an instance of {names} expected, got {technique!r}")

@@ -1,0 +1,56 @@
+"""Reads trimesh objects. trimesh is imported only here, and only when it is used."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from .errors import SceneError
+from .scene import Mesh
+
+
+def read(source: object) -> tuple[list[Mesh], list[str]]:
+    """Meshes with their transforms applied, and what was left out."""
+    notes: list[str] = []
+    if isinstance(source, trimesh.Trimesh):
+        return [_mesh(source, str(source.metadata.get("name", "mesh")), np.eye(4), notes)], notes
+    if not isinstance(source, trimesh.Scene):
+        raise SceneError(f"from_trimesh: a trimesh.Trimesh or trimesh.Scene expected, got {type(source).__name__}")
+    meshes = []
+    for node in source.graph.nodes_geometry:
+        world_from_mesh, geometry_name = source.graph[node]
+        geometry = source.geometry[geometry_name]
+        if isinstance(geometry, trimesh.Trimesh):
+            meshes.append(_mesh(geometry, str(node), np.asarray(world_from_mesh, dtype=np.float64), notes))
+        else:
+            notes.append(f"'{node}' left out: {type(geometry).__name__} is no mesh")
+    return meshes, notes
+
+
+def _mesh(source: trimesh.Trimesh, name: str, world_from_mesh: NDArray[np.float64], notes: list[str]) -> Mesh:
+    vertices = np.array(source.vertices, dtype=np.float64, subok=False)
+    moved = vertices @ world_from_mesh[:3, :3].T + world_from_mesh[:3, 3]
+    colors = _base_color(source.visual, name, notes)
+    return Mesh(name=name, vertices=moved, faces=np.array(source.faces, subok=False), **colors)
+
+
+def _base_color(visual: Any, name: str, notes: list[str]) -> dict[str, Any]:
+    """The one colour of a mesh; trimesh keeps linear colours as bytes, as it reads and writes glTF."""
+    if visual.kind == "texture":
+        material = visual.material
+        if getattr(material, "baseColorTexture", None) is not None or getattr(material, "image", None) is not None:
+            notes.append(f"textures of '{name}' left out")
+        if getattr(material, "baseColorFactor", material.main_color) is None:
+            return {"base_color": (1.0, 1.0, 1.0)}
+        colors = np.asarray(material.main_color)[np.newaxis]
+    elif visual.kind in ("face", "vertex"):
+        colors = np.unique(visual.face_colors if visual.kind == "face" else visual.vertex_colors, axis=0)
+    else:
+        return {}
+    if len(colors) != 1:
+        notes.append(f"{visual.kind} colours of '{name}' left out")
+        return {}
+    return {"base_color": tuple((colors[0, :3] / 255.0).tolist())}

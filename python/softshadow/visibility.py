@@ -1,0 +1,211 @@
+"""How much of each light every receiver sees."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .camera import Camera
+from .checks import floats, whole
+from .device import Device, context
+from .errors import SceneError, SettingsError
+from .files import png_or_npy, write
+from .lights import Light, built_lights
+from .scene import Scene
+from .techniques import RayTraced, Technique, technique_json
+
+Progress = Callable[[int, int], object]
+"""Called with ``(done, total)`` between blocks; returning ``False`` stops the work with ``Interrupted``."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Visibility:
+    """The result of :func:`visibility`.
+
+    Attributes
+    ----------
+    values : float32, (H, W) or (points,), with several lights (lights, H, W) or (lights, points)
+        The visible share of the light: 1 is fully lit. A textured light adds a last axis of 3. NaN only where the camera
+        sees nothing.
+    valid : bool, (H, W) or (points,)
+        False only where the camera sees nothing.
+    standard_error : float32 like `values`, or None
+        Of the mean over the samples; None where the technique has none or it was not asked for.
+    positions : float64, (H, W, 3) or (points, 3), or None
+        World coordinates of the receivers as they were used.
+    normals : float32, (H, W, 3) or (points, 3), or None
+        Geometric, on the camera's side; for points as given.
+    triangles : int64, (H, W) or (points,), or None
+        Triangle ids, counted through the scene's meshes; -1 where there is none.
+    info : dict
+        What made the result: adapter, technique, settings, times and bytes.
+    """
+
+    values: NDArray[np.float32]
+    valid: NDArray[np.bool_]
+    standard_error: NDArray[np.float32] | None
+    positions: NDArray[np.float64] | None
+    normals: NDArray[np.float32] | None
+    triangles: NDArray[np.int64] | None
+    info: dict[str, Any]
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes ``.png`` (16-bit linear grey, black where nothing is seen) or ``.npy`` (the values as they are).
+
+        Raises
+        ------
+        SettingsError
+            For another extension, and for a PNG of anything but one grey image.
+        OSError
+            Where the file cannot be written.
+        """
+        if png_or_npy(path) == "npy":
+            write(path, self.values)
+        elif (png := self._repr_png_()) is not None:
+            write(path, png)
+        else:
+            shape = self.values.shape
+            raise SettingsError(f"{os.fspath(path)}: a PNG holds one grey image, not values of shape {shape}; use .npy")
+
+    def _repr_png_(self) -> bytes | None:
+        if self.valid.ndim != 2 or self.values.shape != self.valid.shape:
+            return None
+        height, width = self.values.shape
+        return _core.png_grey16(self.values.ravel(), (width, height))
+
+    def __repr__(self) -> str:
+        return f"<Visibility of shape {self.values.shape}>"
+
+
+def visibility(
+    scene: Scene,
+    lights: Light | Sequence[Light],
+    *,
+    camera: Camera | None = None,
+    points: ArrayLike | None = None,
+    normals: ArrayLike | None = None,
+    technique: Technique = RayTraced(),  # noqa: B008 - frozen
+    device: Device | str = "auto",
+    memory_limit: int | None = None,
+    progress: Progress | None = None,
+    standard_error: bool = True,
+    receivers: bool = False,
+) -> Visibility:
+    """The share of each light that every receiver sees: 1 is fully lit, 0 is full shadow.
+
+    Parameters
+    ----------
+    scene : Scene
+        What casts shadows. In an empty scene visibility is 1.
+    lights : light or list of lights
+        With a list, even of one, results have a first axis of lights.
+    camera : Camera
+        Receivers are the surface points behind its pixels; either this or `points`.
+    points : (n, 3) float
+        Receivers in world coordinates.
+    normals : (n, 3) float, optional
+        For each point, of any length but zero: light from below the horizon is then not visible. A flat light is never
+        visible from behind.
+    technique : RayTraced or HardShadowMap
+        How it is computed.
+    device : {"auto", "gpu", "software"} or int
+        ``"auto"`` takes a graphics card, else a software adapter; a number is an adapter's index in :func:`doctor`.
+    memory_limit : int, optional
+        Bytes of device memory for one block of receivers.
+    progress : callable, optional
+        Called with ``(done, total)`` between blocks; returning ``False`` stops.
+    standard_error : bool
+        Whether to return it, where the technique has one.
+    receivers : bool
+        Whether to return positions, normals and triangle ids.
+
+    Returns
+    -------
+    Visibility
+
+    Raises
+    ------
+    SceneError
+        For arrays of wrong dtype or shape or with a number that is not finite, by name and first bad index.
+    SettingsError, TooLargeError
+        For options out of range.
+    NoAdapterError, GpuError
+        Where no device fits, or it fails.
+    Interrupted
+        When `progress` returned ``False``.
+    """
+    built, several = built_lights(lights)
+    where = receivers_of(camera, points, normals)
+    limit = None if memory_limit is None else whole("memory_limit", memory_limit, low=1, high=2**64 - 1)
+    arrays = _core.visibility(
+        context(device),
+        scene_of(scene),
+        built,
+        **where.arguments,
+        technique=technique_json("technique", technique),
+        memory_limit=limit,
+        standard_error=bool(standard_error),
+        receivers=bool(receivers),
+        progress=callback(progress),
+    )
+    return shaped(arrays, (len(built),) if several else (), where.shape)
+
+
+@dataclass(frozen=True)
+class WhereReceived:
+    """Checked receivers: the arguments of the core, and the shape of what comes back."""
+
+    arguments: dict[str, Any]
+    shape: tuple[int, ...]
+
+
+def receivers_of(camera: object, points: ArrayLike | None, normals: ArrayLike | None) -> WhereReceived:
+    """Either a camera or points."""
+    if (camera is None) == (points is None):
+        raise SceneError("receivers: give either a camera or points")
+    if points is None:
+        if normals is not None:
+            raise SceneError("normals: only points take normals; a camera sees the surface's own")
+        if not isinstance(camera, Camera):
+            raise SceneError(f"camera: a softshadow.Camera expected, got {type(camera).__name__}")
+        return WhereReceived({"camera": camera._built(), "points": None, "normals": None}, camera.shape)
+    positions = floats("points", points, ("n", 3))
+    directions = None if normals is None else floats("normals", normals, ("n", 3))
+    return WhereReceived({"camera": None, "points": positions, "normals": directions}, (len(positions),))
+
+
+def scene_of(scene: object) -> _core.Scene:
+    """The scene of the core."""
+    if not isinstance(scene, Scene):
+        raise SceneError(f"scene: a softshadow.Scene expected, got {type(scene).__name__}")
+    return scene._built()
+
+
+def callback(progress: Progress | None) -> Progress | None:
+    """A progress callback, or none."""
+    if progress is not None and not callable(progress):
+        raise SettingsError(f"progress: a callable (done, total) expected, got {progress!r}")
+    return progress
+
+
+def shaped(arrays: _core._VisibilityArrays, leading: tuple[int, ...], shape: tuple[int, ...]) -> Visibility:
+    """The core's flat arrays in their public shapes: `leading` is (lights,) or nothing."""
+    channels = arrays["channels"]
+    full = leading + shape + ((channels,) if channels > 1 else ())
+    error, placed = arrays["standard_error"], arrays["placed"]
+    return Visibility(
+        values=arrays["values"].reshape(full),
+        valid=arrays["valid"].reshape(shape),
+        standard_error=None if error is None else error.reshape(full),
+        positions=None if placed is None else placed["positions"].reshape(*shape, 3),
+        normals=None if placed is None else placed["normals"].reshape(*shape, 3),
+        triangles=None if placed is None else placed["triangles"].reshape(shape),
+        info=json.loads(arrays["info"]),
+    )
