@@ -6,9 +6,9 @@
 >>> result.values.shape  # doctest: +SKIP
 (540, 960)
 
-Matrices are row-major arrays of column-vector mathematics with the translation in ``[:3, 3]``. Cameras look along −Z
-with +Y up, lights emit along −Z. Sizes are ``(width, height)`` in arguments and ``(H, W)`` in arrays. Visibility is 1 where
-a light is fully seen. Colours are linear; only PNGs of pictures are sRGB.
+Matrices are row-major arrays of column-vector mathematics with the translation in ``[:3, 3]``. Cameras look
+along −Z with +Y up, lights emit along −Z. Sizes are ``(width, height)`` in arguments, ``(H, W)`` in arrays.
+Visibility is 1 where a light is fully seen. Colours are linear; only PNGs of pictures are sRGB.
 """
 
 from . import scenes
@@ -20,6 +20,7 @@ from .errors import (
     GpuError,
     GpuOutOfMemory,
     Interrupted,
+    MeasureError,
     NoAdapterError,
     OutputError,
     SceneError,
@@ -47,6 +48,7 @@ __all__ = [
     "Interrupted",
     "Light",
     "LightPoints",
+    "MeasureError",
     "Mesh",
     "NoAdapterError",
     "OutputError",

@@ -28,7 +28,7 @@ def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike | None = None) -> N
     eye, target : (3,) float
         World coordinates.
     up : (3,) float, optional
-        Where local +Y points as far as possible: world +Y, or world −Z for a vertical view, where nothing is given.
+        Where local +Y points as far as possible; else world +Y, or world −Z for a vertical view.
 
     Returns
     -------
@@ -117,9 +117,9 @@ class Camera(ByValue):
         camera : trimesh.scene.Camera
             Read, never changed.
         transform : (4, 4) float
-            ``scene.camera_transform``, or what ``camera.look_at`` returns: the pose, whatever its docstring says.
+            ``scene.camera_transform``, or what ``camera.look_at`` returns: the pose, against its docstring.
         """
-        # Its resolution is (width, height), against its docstring. K is not asked for: its setter changes the resolution.
+        # Its resolution is (width, height), against its docstring. K is left alone: its setter changes it.
         # Asking a copy keeps what trimesh works out and caches off the caller's camera.
         own = copy.copy(camera)
         width, height = (int(n) for n in own.resolution)

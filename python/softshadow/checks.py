@@ -1,4 +1,4 @@
-"""What callers may pass: numbers and arrays are converted only where nothing is lost, everything else is named."""
+"""What callers may pass: numbers and arrays are converted only where nothing is lost."""
 
 from __future__ import annotations
 
@@ -45,9 +45,15 @@ def whole(what: str, value: object, *, low: int = 0, high: int = UINT32_MAX) -> 
     """One whole number between `low` and `high`."""
     if not isinstance(value, Integral) or isinstance(value, (bool, np.bool_)):
         raise SettingsError(f"{what}: a whole number expected, got {_type_name(value)}")
-    if not low <= value <= high:
-        raise SettingsError(f"{what}: must lie between {low} and {high}, got {value}")
-    return int(value)
+    number = int(value)
+    if not low <= number <= high:
+        raise SettingsError(f"{what}: must lie between {low} and {high}, got {number}")
+    return number
+
+
+def memory_limit_bytes(value: object) -> int | None:
+    """A number of bytes, or None for the library's own limit."""
+    return None if value is None else whole("memory_limit", value, low=1, high=2**64 - 1)
 
 
 def vector(what: str, value: ArrayLike) -> tuple[float, float, float]:
@@ -99,7 +105,7 @@ def _array(what: str, value: ArrayLike, kinds: str) -> NDArray[Any]:
     except (ValueError, TypeError) as error:
         raise SceneError(f"{what}: not an array of numbers ({error})") from None
     has_dtype = hasattr(value, "dtype")
-    # Lists say nothing of their type: whole numbers in them are coordinates too, and an empty one is anything.
+    # Lists say nothing of their type: whole numbers in them may be coordinates, an empty one may be anything.
     accepted = kinds if has_dtype else kinds + "iu"
     if array.dtype.kind not in accepted and (has_dtype or array.size):
         raise SceneError(f"{what}: {_KINDS[kinds]} numbers expected, got dtype {array.dtype}")

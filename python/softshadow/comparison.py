@@ -30,14 +30,17 @@ class Comparison:
         One a technique, in the order given: settings, error metrics and milliseconds.
     reference : dict
         What made the reference.
+    reference_standard_error : float or None
+        Root mean square of the reference's own standard error over the penumbra: errors below it say nothing.
     """
 
     rows: list[dict[str, Any]]
     reference: dict[str, Any]
+    reference_standard_error: float | None
 
     def to_json(self) -> str:
         """All numbers as JSON."""
-        return json.dumps({"reference": self.reference, "rows": self.rows}, indent=2)
+        return json.dumps(vars(self), indent=2)
 
     def __str__(self) -> str:
         flat = [_flat(row) for row in self.rows]
@@ -100,8 +103,7 @@ def compare(
         repeats=whole("repeats", repeats, low=1),
         progress=callback(progress),
     )
-    result = json.loads(text)
-    return Comparison(rows=result["rows"], reference=result["reference"])
+    return Comparison(**json.loads(text))
 
 
 def _flat(row: dict[str, Any], prefix: str = "") -> dict[str, Any]:

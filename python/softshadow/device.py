@@ -29,7 +29,8 @@ def context(device: Device | str) -> _core.Context:
     adapter = json.loads(made.adapter)
     if name == "auto" and adapter["device_type"] == "software":
         text = f"no graphics card was found; computing on the processor with {adapter['name']}"
-        warnings.warn(f'{text} (device="software" says that this is meant)', SoftwareAdapterWarning, stacklevel=3)
+        hint = '(device="software" says that this is meant)'
+        warnings.warn(f"{text} {hint}", SoftwareAdapterWarning, stacklevel=3)
     return made
 
 

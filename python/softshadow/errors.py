@@ -6,7 +6,7 @@ class SoftShadowError(Exception):
 
 
 class SceneError(SoftShadowError, ValueError):
-    """A scene, light, camera or receiver that cannot be used; the message names it, the first bad index and the fix."""
+    """A scene, light, camera or receiver that cannot be used; the message names it and the first bad index."""
 
 
 class SceneFileNotFound(SceneError, FileNotFoundError):
@@ -31,6 +31,10 @@ class GpuError(SoftShadowError, RuntimeError):
 
 class GpuOutOfMemory(GpuError, MemoryError):
     """The device has too little memory; a smaller ``memory_limit`` makes smaller blocks."""
+
+
+class MeasureError(SoftShadowError, ValueError):
+    """Results that cannot be compared."""
 
 
 class Interrupted(SoftShadowError, RuntimeError):

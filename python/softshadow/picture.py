@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .camera import Camera
-from .checks import choice, color, real, whole
+from .checks import choice, color, memory_limit_bytes, real
 from .device import Device, context
 from .errors import SettingsError
 from .files import png_or_npy, write
@@ -30,19 +29,21 @@ class Picture:
     Attributes
     ----------
     linear : float32, (H, W, 3)
-        Reflected radiance, linear red, green, blue, before exposure.
+        Exposed linear red, green, blue.
     srgb : uint8, (H, W, 3)
-        Exposed, clipped and encoded for display.
+        The same clipped to 0..1 and encoded for display.
     visibility : Visibility
         The visibility that the picture was made of, with a first axis of lights where a list was given.
-    info : dict
-        What made the result: adapter, technique, settings, times and bytes.
     """
 
     linear: NDArray[np.float32]
     srgb: NDArray[np.uint8]
     visibility: Visibility
-    info: dict[str, Any]
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """What made the picture: adapter, technique, settings, times and bytes."""
+        return self.visibility.info
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes ``.png`` (sRGB) or ``.npy`` (the linear colours).
@@ -93,9 +94,9 @@ def render(
     shading : {"integrated", "modulated"}
         Light summed over the samples that are visible, or the unshadowed sum times visibility.
     exposure : float
-        In stops: each doubles the brightness. Applies to `Picture.srgb` alone.
+        In stops: each doubles the brightness.
     background : (3,) float, optional
-        Linear colour where the camera sees nothing.
+        Linear colour where the camera sees nothing; not exposed.
     device, memory_limit, progress
         As in :func:`visibility`.
 
@@ -122,12 +123,11 @@ def render(
         shading=choice("shading", shading, ("integrated", "modulated")),
         exposure=stops,
         background=None if background is None else color("background", background),
-        memory_limit=None if memory_limit is None else whole("memory_limit", memory_limit, low=1, high=2**64 - 1),
+        memory_limit=memory_limit_bytes(memory_limit),
         progress=callback(progress),
     )
     return Picture(
         linear=arrays["linear"].reshape(*where.shape, 3),
         srgb=arrays["srgb"].reshape(*where.shape, 3),
         visibility=shaped(arrays["visibility"], (len(built),) if several else (), where.shape),
-        info=json.loads(arrays["info"]),
     )

@@ -59,9 +59,8 @@ class Mesh(ByValue):
         if outside.any():
             triangle, corner = (int(i) for i in np.argwhere(outside)[0])
             vertex = faces[triangle, corner]
-            raise SceneError(
-                f"{what}: triangle {triangle} refers to vertex {vertex}, but there are {len(vertices)} vertices"
-            )
+            there_are = f"there are {len(vertices)} vertices"
+            raise SceneError(f"{what}: triangle {triangle} refers to vertex {vertex}, but {there_are}")
         set_fields(
             self,
             name=str(self.name),
@@ -92,7 +91,7 @@ class Scene:
         For more triangles than a scene may have.
     """
 
-    __slots__ = ("_meshes", "_notes", "_core_scene")
+    __slots__ = ("_core_scene", "_meshes", "_notes")
 
     def __init__(self, meshes: Iterable[Mesh] = (), *, notes: Iterable[str] = ()) -> None:
         self._meshes: tuple[Mesh, ...] | None = tuple(meshes)
@@ -103,7 +102,7 @@ class Scene:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Scene:
-        """Reads a ``.glb``, ``.gltf`` or ``.obj`` file. What the library does not model is listed in :attr:`notes`.
+        """Reads a ``.glb``, ``.gltf`` or ``.obj`` file; what is left out is listed in :attr:`notes`.
 
         Raises
         ------
@@ -158,8 +157,7 @@ class Scene:
     def from_trimesh(cls, source: trimesh.Trimesh | trimesh.Scene) -> Scene:
         """A scene from trimesh, which is read and never changed: nothing is merged, repaired or cached.
 
-        Every instance of a scene's graph becomes a mesh of its own, with its transform applied and its node's name.
-        Base colours are taken where one material or one colour covers a mesh; what is left out is listed in
+        Every instance in a scene's graph becomes a mesh of its own, with its transform and its node's name. Base colours are taken where one material or one colour covers a mesh; what is left out is listed in
         :attr:`notes`.
 
         Raises

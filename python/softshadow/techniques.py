@@ -1,4 +1,4 @@
-"""Shadow techniques and their settings. Defaults and ranges are the library's own, read when this module is imported."""
+"""Shadow techniques and their settings. Defaults and ranges are the library's own, read at import."""
 
 from __future__ import annotations
 

@@ -18,7 +18,8 @@ def read(source: object) -> tuple[list[Mesh], list[str]]:
     if isinstance(source, trimesh.Trimesh):
         return [_mesh(source, str(source.metadata.get("name", "mesh")), np.eye(4), notes)], notes
     if not isinstance(source, trimesh.Scene):
-        raise SceneError(f"from_trimesh: a trimesh.Trimesh or trimesh.Scene expected, got {type(source).__name__}")
+        kind = type(source).__name__
+        raise SceneError(f"from_trimesh: a trimesh.Trimesh or trimesh.Scene expected, got {kind}")
     meshes = []
     for node in source.graph.nodes_geometry:
         world_from_mesh, geometry_name = source.graph[node]
@@ -41,7 +42,8 @@ def _base_color(visual: Any, name: str, notes: list[str]) -> dict[str, Any]:
     """The one colour of a mesh; trimesh keeps linear colours as bytes, as it reads and writes glTF."""
     if visual.kind == "texture":
         material = visual.material
-        if getattr(material, "baseColorTexture", None) is not None or getattr(material, "image", None) is not None:
+        images = (getattr(material, name, None) for name in ("baseColorTexture", "image"))
+        if any(image is not None for image in images):
             notes.append(f"textures of '{name}' left out")
         if getattr(material, "baseColorFactor", material.main_color) is None:
             return {"base_color": (1.0, 1.0, 1.0)}

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .camera import Camera
-from .checks import floats, whole
+from .checks import floats, memory_limit_bytes
 from .device import Device, context
 from .errors import SceneError, SettingsError
 from .files import png_or_npy, write
@@ -32,8 +32,8 @@ class Visibility:
     Attributes
     ----------
     values : float32, (H, W) or (points,), with several lights (lights, H, W) or (lights, points)
-        The visible share of the light: 1 is fully lit. A textured light adds a last axis of 3. NaN only where the camera
-        sees nothing.
+        The visible share of the light: 1 is fully lit. A textured light adds a last axis of 3. NaN only where the
+        camera sees nothing.
     valid : bool, (H, W) or (points,)
         False only where the camera sees nothing.
     standard_error : float32 like `values`, or None
@@ -57,7 +57,7 @@ class Visibility:
     info: dict[str, Any]
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes ``.png`` (16-bit linear grey, black where nothing is seen) or ``.npy`` (the values as they are).
+        """Writes ``.png`` (16-bit linear grey, black where nothing is seen) or ``.npy`` (the values).
 
         Raises
         ------
@@ -71,8 +71,8 @@ class Visibility:
         elif (png := self._repr_png_()) is not None:
             write(path, png)
         else:
-            shape = self.values.shape
-            raise SettingsError(f"{os.fspath(path)}: a PNG holds one grey image, not values of shape {shape}; use .npy")
+            words = f"a PNG holds one grey image, not values of shape {self.values.shape}; use .npy"
+            raise SettingsError(f"{os.fspath(path)}: {words}")
 
     def _repr_png_(self) -> bytes | None:
         if self.valid.ndim != 2 or self.values.shape != self.valid.shape:
@@ -111,12 +111,12 @@ def visibility(
     points : (n, 3) float
         Receivers in world coordinates.
     normals : (n, 3) float, optional
-        For each point, of any length but zero: light from below the horizon is then not visible. A flat light is never
-        visible from behind.
+        For each point, of any length but zero: light from below the horizon is then not visible. A flat light is
+        never visible from behind.
     technique : RayTraced or HardShadowMap
         How it is computed.
     device : {"auto", "gpu", "software"} or int
-        ``"auto"`` takes a graphics card, else a software adapter; a number is an adapter's index in :func:`doctor`.
+        ``"auto"`` takes a graphics card, else a software adapter; a number is an index in :func:`doctor`.
     memory_limit : int, optional
         Bytes of device memory for one block of receivers.
     progress : callable, optional
@@ -143,14 +143,13 @@ def visibility(
     """
     built, several = built_lights(lights)
     where = receivers_of(camera, points, normals)
-    limit = None if memory_limit is None else whole("memory_limit", memory_limit, low=1, high=2**64 - 1)
     arrays = _core.visibility(
         context(device),
         scene_of(scene),
         built,
         **where.arguments,
         technique=technique_json("technique", technique),
-        memory_limit=limit,
+        memory_limit=memory_limit_bytes(memory_limit),
         standard_error=bool(standard_error),
         receivers=bool(receivers),
         progress=callback(progress),

@@ -31,7 +31,7 @@ pub use error::Error;
 pub use info::Info;
 pub use light_points::{LightPoints, light_points};
 pub use render::{Picture, PictureOptions, render};
-pub use softshadow_engine::{AdapterInfo, DeviceKind, PassTime};
+pub use softshadow_engine::{AdapterInfo, DeviceKind, PassTime, Timing};
 pub use softshadow_measure as measure;
 pub use softshadow_scene::{
     Camera, Dropped, Light, LightShape, LightTexture, Material, Mesh, Points, Receivers, SamplePattern, Scene,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use softshadow_engine::{RunReport, StageReport};
+use softshadow_engine::{RunReport, StageReport, Timing};
 use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
@@ -28,11 +28,19 @@ pub struct Options {
     pub receivers: bool,
     /// Return which samples were blocked, of the last progressive pass. Only techniques that trace every sample have them.
     pub sample_masks: bool,
+    /// How passes are timed.
+    pub timing: Timing,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { memory_limit_bytes: 1 << 30, standard_error: false, receivers: false, sample_masks: false }
+        Self {
+            memory_limit_bytes: 1 << 30,
+            standard_error: false,
+            receivers: false,
+            sample_masks: false,
+            timing: Timing::Device,
+        }
     }
 }
 
@@ -157,8 +165,8 @@ pub(crate) fn run(
     let uploads: BTreeMap<ContentKey, Content> = contents.contents().map(|c| (c.key, c.clone())).collect();
     let total = program.stages() as u64;
     let mut done = 0;
-    let report = engine.run(&program, &uploads, &mut |stage: Option<StageReport>| {
-        if let (Some(stage), true) = (&stage, true) {
+    let report = engine.run(&program, &uploads, options.timing, &mut |stage: Option<StageReport>| {
+        if let Some(stage) = &stage {
             done += 1;
             if let Some(task) = program.task(stage.index) {
                 collector.add(program.blocks[task.block], task.light, &stage.outputs);

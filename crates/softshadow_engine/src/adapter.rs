@@ -70,26 +70,38 @@ pub(crate) struct Opened {
 /// Every adapter of this machine, Vulkan, Metal and Direct3D before GL.
 #[must_use]
 pub fn adapters() -> Vec<AdapterInfo> {
-    let (_, found) = enumerate(false);
+    let found = enumerate(ALL);
     found.iter().enumerate().map(|(index, adapter)| describe(index, adapter)).collect()
 }
 
-fn enumerate(noop: bool) -> (wgpu::Instance, Vec<wgpu::Adapter>) {
+const ALL: wgpu::Backends = wgpu::Backends::PRIMARY.union(wgpu::Backends::GL);
+
+fn enumerate(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::PRIMARY | wgpu::Backends::GL;
-    if noop {
-        descriptor.backends = wgpu::Backends::NOOP;
+    descriptor.backends = backends;
+    if backends == wgpu::Backends::NOOP {
         descriptor.backend_options.noop = wgpu::NoopBackendOptions::enabled();
     }
-    let backends = descriptor.backends;
     let instance = wgpu::Instance::new(descriptor);
     let mut found = pollster::block_on(instance.enumerate_adapters(backends));
     found.sort_by_key(|adapter| adapter.get_info().backend == wgpu::Backend::Gl);
-    (instance, found)
+    found
+}
+
+/// Adapters for a choice. GL is asked only where nothing else answers, or by its index: opening it is slow and noisy.
+fn candidates(choice: AdapterChoice) -> Vec<wgpu::Adapter> {
+    match choice {
+        AdapterChoice::Noop => enumerate(wgpu::Backends::NOOP),
+        AdapterChoice::Index(_) => enumerate(ALL),
+        _ => {
+            let found = enumerate(wgpu::Backends::PRIMARY);
+            if found.is_empty() { enumerate(ALL) } else { found }
+        }
+    }
 }
 
 pub(crate) fn open(choice: AdapterChoice) -> Result<Opened, EngineError> {
-    let (_instance, found) = enumerate(choice == AdapterChoice::Noop);
+    let found = candidates(choice);
     let kinds: Vec<DeviceKind> = found.iter().map(|a| kind(&a.get_info())).collect();
     let first = |wanted| kinds.iter().position(|k| *k == wanted);
     let (index, wanted) = match choice {

@@ -11,4 +11,4 @@ mod timing;
 
 pub use adapter::{AdapterChoice, AdapterInfo, DeviceKind, adapters};
 pub use error::EngineError;
-pub use run::{Engine, PassTime, RunReport, StageReport};
+pub use run::{Engine, PassTime, RunReport, StageReport, Timing};

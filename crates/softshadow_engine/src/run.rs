@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use softshadow_plan::{
     Content, ContentKey, Count, Host, Origin, Over, Pass, Plan, Program, Raster, ResourceId, SLICE, Stage, Step,
-    Values, VertexSource, Work, check,
+    VertexSource, Work, check,
 };
 
-use crate::adapter::{AdapterChoice, AdapterInfo, Opened, open};
+use crate::adapter::{AdapterChoice, AdapterInfo, DeviceKind, Opened, open};
 use crate::error::EngineError;
 use crate::pipelines::Pipelines;
 use crate::pool::{Pool, Slot};
@@ -18,7 +18,7 @@ use crate::timing::Timestamps;
 
 /// Rays or similar steps of one submission: below a second on a slow software driver, so that watchdogs stay quiet and a
 /// caller can stop in between.
-const WORK_PER_SUBMISSION: u64 = 1 << 24;
+const WORK_PER_SUBMISSION: u64 = 1 << 25;
 
 /// How long one submission may take.
 const TIMEOUT_SECONDS: u64 = 300;
@@ -45,6 +45,16 @@ pub struct PassTime {
     pub label: String,
     /// Milliseconds.
     pub ms: f64,
+}
+
+/// How passes are timed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Timing {
+    /// By the device's clock, where it has one that can be trusted; costs nothing.
+    #[default]
+    Device,
+    /// By the wall clock, each pass in a submission of its own; the whole takes longer.
+    EachPass,
 }
 
 /// What one stage produced.
@@ -121,6 +131,7 @@ impl Engine {
         &self,
         program: &dyn Program,
         contents: &BTreeMap<ContentKey, Content>,
+        timing: Timing,
         on_stage: &mut dyn FnMut(Option<StageReport>) -> bool,
     ) -> Result<RunReport, EngineError> {
         let mut state = lock(&self.state);
@@ -130,7 +141,7 @@ impl Engine {
         let mut decision: Vec<u32> = Vec::new();
         let mut index = 0;
         while let Step::Run(stage) = program.step(index, &decision) {
-            let result = self.run_stage(&mut state, &stage, contents, &mut report, on_stage);
+            let result = self.run_stage(&mut state, &stage, contents, timing, &mut report, on_stage);
             if result.is_err() {
                 // Whatever a failed stage left behind is not trusted again.
                 state.pool.clear();
@@ -155,6 +166,7 @@ impl Engine {
         state: &mut State,
         stage: &Stage,
         contents: &BTreeMap<ContentKey, Content>,
+        timing: Timing,
         report: &mut RunReport,
         on_stage: &mut dyn FnMut(Option<StageReport>) -> bool,
     ) -> Result<BTreeMap<String, Vec<u8>>, EngineError> {
@@ -167,7 +179,7 @@ impl Engine {
         }
         let scopes = [wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::Internal]
             .map(|filter| device.push_error_scope(filter));
-        let result = self.encode_and_run(state, plan, &stage.values, contents, report, on_stage);
+        let result = self.encode_and_run(state, stage, contents, timing, report, on_stage);
         // Scopes close in the reverse of the order in which they were opened.
         let mut caught = None;
         for scope in scopes.into_iter().rev() {
@@ -193,12 +205,13 @@ impl Engine {
     fn encode_and_run(
         &self,
         state: &mut State,
-        plan: &Plan,
-        values: &Values,
+        stage: &Stage,
         contents: &BTreeMap<ContentKey, Content>,
+        timing: Timing,
         report: &mut RunReport,
         on_stage: &mut dyn FnMut(Option<StageReport>) -> bool,
     ) -> Result<BTreeMap<String, Vec<u8>>, EngineError> {
+        let (plan, values) = (&stage.plan, &stage.values);
         let (device, queue) = (&self.opened.device, &self.opened.queue);
         let slots = plan
             .resources
@@ -213,7 +226,7 @@ impl Engine {
                 Ok(slot)
             })
             .collect::<Result<Vec<Slot>, EngineError>>()?;
-        let submissions = schedule(plan, &self.opened.host);
+        let submissions = schedule(plan, &self.opened.host, timing);
         let slices = self.slice_buffer(&submissions);
         let last = submissions.len().saturating_sub(1);
         let outputs: Vec<ResourceId> = plan.outputs.iter().chain(&plan.decision).copied().collect();
@@ -221,7 +234,9 @@ impl Engine {
         for (number, dispatches) in submissions.iter().enumerate() {
             let mut encoder =
                 device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(&plan.name) });
-            let mut timestamps = Timestamps::new(device, dispatches.len());
+            // Software drivers stamp a pass before its work is done: their passes are timed one submission at a time.
+            let has_clock = timing == Timing::Device && self.opened.info.device_type == DeviceKind::Gpu;
+            let mut timestamps = if has_clock { Timestamps::new(device, dispatches.len()) } else { None };
             for dispatch in dispatches {
                 self.encode(state, plan, &slots, &slices, dispatch, &mut encoder, &mut timestamps)?;
             }
@@ -229,6 +244,7 @@ impl Engine {
                 readback = self.copy_outputs(plan, &slots, &outputs, &mut encoder);
             }
             let clock = timestamps.as_ref().and_then(|t| t.resolve(&mut encoder)).cloned();
+            let submitted = Instant::now();
             queue.submit([encoder.finish()]);
             report.submissions += 1;
             let mut waiting: Vec<&wgpu::Buffer> = clock.iter().collect();
@@ -237,6 +253,10 @@ impl Engine {
             if let (Some(timestamps), true) = (&timestamps, clock.is_some()) {
                 let times = timestamps.read(&read.remove(0), queue.get_timestamp_period());
                 add_times(&mut report.pass_ms, times);
+            }
+            if let (Timing::EachPass, [dispatch]) = (timing, dispatches.as_slice()) {
+                let ms = submitted.elapsed().as_secs_f64() * 1e3;
+                add_times(&mut report.pass_ms, vec![PassTime { label: dispatch.pass.label.clone(), ms }]);
             }
             if number == last {
                 let labels = outputs.iter().map(|id| plan.resources[id.index()].label.clone());
@@ -522,7 +542,7 @@ fn bind_group(
 }
 
 /// Passes as dispatches, grouped into submissions of bounded work.
-fn schedule<'a>(plan: &'a Plan, host: &Host) -> Vec<Vec<Dispatch<'a>>> {
+fn schedule<'a>(plan: &'a Plan, host: &Host, timing: Timing) -> Vec<Vec<Dispatch<'a>>> {
     let mut submissions: Vec<Vec<Dispatch<'a>>> = vec![Vec::new()];
     let mut work = 0u64;
     let mut slice = 0;
@@ -551,6 +571,12 @@ fn schedule<'a>(plan: &'a Plan, host: &Host) -> Vec<Vec<Dispatch<'a>>> {
                 submissions.push(Vec::new());
                 work = 0;
             }
+        }
+    }
+    if timing == Timing::EachPass {
+        submissions = submissions.into_iter().flatten().map(|dispatch| vec![dispatch]).collect();
+        if submissions.is_empty() {
+            submissions.push(Vec::new());
         }
     }
     submissions

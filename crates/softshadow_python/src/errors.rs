@@ -10,6 +10,7 @@ mod python {
     import_exception!(softshadow.errors, GpuError);
     import_exception!(softshadow.errors, GpuOutOfMemory);
     import_exception!(softshadow.errors, Interrupted);
+    import_exception!(softshadow.errors, MeasureError);
     import_exception!(softshadow.errors, NoAdapterError);
     import_exception!(softshadow.errors, OutputError);
     import_exception!(softshadow.errors, SceneError);
@@ -30,6 +31,7 @@ pub(crate) fn exception(error: Error) -> PyErr {
         Error::OutOfMemory(_) => python::GpuOutOfMemory::new_err(text),
         Error::Gpu(_) => python::GpuError::new_err(text),
         Error::Interrupted => python::Interrupted::new_err(text),
+        Error::Measure(_) => python::MeasureError::new_err(text),
         Error::File(_) => python::OutputError::new_err(text),
         // The enum may grow; an error without a class of its own is still one of ours.
         _ => python::SoftShadowError::new_err(text),

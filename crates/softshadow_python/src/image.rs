@@ -23,9 +23,9 @@ pub(crate) fn png_grey16(
 #[pyfunction]
 pub(crate) fn png_srgb8(
     py: Python<'_>,
-    bytes: PyReadonlyArray1<'_, u8>,
+    colors: PyReadonlyArray1<'_, u8>,
     size: [u32; 2],
 ) -> PyResult<Cow<'static, [u8]>> {
-    let bytes = bytes.as_slice()?.to_vec();
-    detached(py, || image_file::png_srgb8_bytes(&bytes, size)).map(Cow::Owned)
+    let colors = colors.as_slice()?.to_vec();
+    detached(py, || image_file::png_srgb8_bytes(&colors, size)).map(Cow::Owned)
 }

@@ -36,7 +36,6 @@ pub(crate) struct PictureArrays<'py> {
     linear: Bound<'py, PyArray1<f32>>,
     srgb: Bound<'py, PyArray1<u8>>,
     visibility: VisibilityArrays<'py>,
-    info: String,
 }
 
 impl<'py> VisibilityArrays<'py> {
@@ -143,7 +142,6 @@ pub(crate) fn render<'py>(
         Ok((picture, srgb))
     })?;
     Ok(PictureArrays {
-        info: json(&picture.info)?,
         linear: picture.linear.into_flattened().into_pyarray(py),
         srgb: srgb.into_pyarray(py),
         visibility: VisibilityArrays::new(py, picture.visibility)?,

@@ -1,19 +1,15 @@
 //! How far a float32 kernel's determinants can be from exact ones.
 //!
-//! The kernel under test rounds `a = v0 − p`, `b = v1 − p`, `c = v2 − p`, `d = s − p`, `e1 = v1 − v0`, `e2 = v2 − v0` to
+//! The kernel under test rounds `a = v0 − p`, `b = v1 − p`, `d = s − p`, `e1 = v1 − v0`, `e2 = v2 − v0`, `e3 = v2 − v1` to
 //! float32 and computes, in float32,
 //!
 //! ```text
-//! E01 = d·(a×b)   E12 = d·(b×c)   E02 = d·(a×c)   T = a·(e1×e2)   D = d·(e1×e2)
+//! E01 = d·(a×e1)   E12 = d·(b×e3)   E02 = d·(a×e2)   T = a·(e1×e2)   D = d·(e1×e2)
 //! blocked iff  E01, E12, −E02 all >= 0 or all <= 0,  T ≠ 0,  D ≠ 0,  sign T = sign D,  |T| < |D| (points only)
 //! ```
 //!
-//! `e1×e2 = a×b + b×c + c×a`, so D is the sum of the edges; computed from e1 and e2 it is rounded in proportion to the
-//! triangle, not to its distance. T and D stay sharp however small and far the triangle is.
-//!
-//! The edges do not: they come from vectors as long as the distance L, so an edge of length e is known to about K·u·L²/e
-//! across (K·u·L for rays along a coordinate axis, where most products vanish). Off the axes that is a good part of the
-//! edge itself at e = L/1000, and rays through such a triangle graze it.
+//! `d·(a×e1) = d·(a×b)` and `e1×e2 = a×b + b×c + c×a`; but every determinant has an edge of the triangle for a factor, so
+//! that rounding is in proportion to the triangle. At a distance L an edge is known to K·u·L across, however short it is.
 //!
 //! A computed sum of products differs from the exact one by at most `k·u` of the sum of absolute products, where k is the
 //! number of roundings that any one product passes through and u = 2^-24 (Higham, *Accuracy and Stability of Numerical

@@ -106,10 +106,12 @@ pub(super) struct ShadowVolume {
 impl ShadowVolume {
     pub(super) fn new(origin: Vec3, triangle: &Triangle) -> Self {
         let [v0, v1, v2] = *triangle;
-        let [a, b, c] = triangle.map(|corner| sub(corner, origin));
-        let depth = Form::cross(sub(v1, v0), sub(v2, v0));
+        let (a, b) = (sub(v0, origin), sub(v1, origin));
+        let (e1, e2) = (sub(v1, v0), sub(v2, v0));
+        let depth = Form::cross(e1, e2);
         let [volume, volume_bound] = depth.at(a, abs(a));
-        Self { edges: [Form::cross(a, b), Form::cross(b, c), Form::cross(c, a)], depth, volume, volume_bound }
+        let edges = [Form::cross(a, e1), Form::cross(b, sub(v2, v1)), Form::cross(e2, a)];
+        Self { edges, depth, volume, volume_bound }
     }
 
     /// False only when [`Self::contact`] finds no possible hit for any ray of the hull: the same inequalities, each over

@@ -51,6 +51,11 @@ fn add_offset(center: Vec3, next: &mut impl FnMut() -> f64, size: f64) -> Vec3 {
     crate::vector::add(center, float32_vector(next, size))
 }
 
+/// Twice as far as the middle of an edge.
+fn beyond_an_edge([from, to, _]: &Triangle, origin: Vec3) -> Vec3 {
+    crate::vector::sub(crate::vector::add(*from, *to), origin)
+}
+
 fn vertex(at: Vec3) -> Vec3 {
     at.map(|value| f64::from(value as f32))
 }
@@ -60,7 +65,8 @@ fn the_cull_changes_no_verdict() {
     let mut next = uniforms(1);
     let (mut kept, mut seen, mut grazing) = (0, 0, 0);
     for round in 0..200 {
-        let scene = RayReference::new(&hostile_mesh(&mut next, 150)).unwrap();
+        let mesh = hostile_mesh(&mut next, 150);
+        let scene = RayReference::new(&mesh).unwrap();
         let mut receiver = Receiver::at(float32_vector(&mut next, 2.0));
         match round % 4 {
             1 => receiver.normal = Some(float32_vector(&mut next, 1.0)),
@@ -72,7 +78,10 @@ fn the_cull_changes_no_verdict() {
         let spread = 10_f64.powf(next() * 3.0 - 2.0);
         let targets: Vec<Target> = (0..64)
             .map(|sample| {
-                let at = vertex(add_offset(light, &mut next, spread));
+                let at = match sample % 8 {
+                    3.. if round % 10 == 7 => vertex(beyond_an_edge(&mesh[sample], receiver.origin)),
+                    _ => vertex(add_offset(light, &mut next, spread)),
+                };
                 if round % 5 == 0 && sample % 2 == 0 { Target::Direction(at) } else { Target::Point(at) }
             })
             .collect();

@@ -13,6 +13,8 @@ pub(crate) enum Kernel {
     /// Plane and far end from the vectors to the corners: `T = a·(b×c)`, `D = E01 + E12 − E02`. The same numbers without
     /// rounding; with it, noise for a small triangle far away.
     PlaneFromCorners,
+    /// Edges from the vectors to both corners, `d·(a×b)`: noise, likewise.
+    EdgesFromCorners,
     WrongSign,
     BlindToItsEnd,
     /// The occluders lie one part in a thousand off.
@@ -37,13 +39,16 @@ fn blocked(p: V3, target: Target, mut face: [V3; 3], kernel: Kernel) -> bool {
     }
     let [a, b, c] = face.map(|corner| sub(corner, p));
     let (d, at_infinity) = relative(p, target);
-    let e01 = det(d, a, b, kernel);
-    let e12 = det(d, b, c, kernel);
-    let e02 = det(d, a, c, kernel) * if kernel == Kernel::WrongSign { -1.0 } else { 1.0 };
+    let (e1, e2, e3) = (sub(face[1], face[0]), sub(face[2], face[0]), sub(face[2], face[1]));
+    let (e01, e12, e02) = if kernel == Kernel::EdgesFromCorners {
+        (det(d, a, b, kernel), det(d, b, c, kernel), det(d, a, c, kernel))
+    } else {
+        (det(d, a, e1, kernel), det(d, b, e3, kernel), det(d, a, e2, kernel))
+    };
+    let e02 = e02 * if kernel == Kernel::WrongSign { -1.0 } else { 1.0 };
     let (volume, depth) = if kernel == Kernel::PlaneFromCorners {
         (det(a, b, c, kernel), e01 + e12 - e02)
     } else {
-        let (e1, e2) = (sub(face[1], face[0]), sub(face[2], face[0]));
         (det(a, e1, e2, kernel), det(d, e1, e2, kernel))
     };
     let edges = [e01, e12, -e02];

@@ -1,0 +1,161 @@
+from collections.abc import Callable
+from typing import TypedDict, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+_Vector = tuple[float, float, float] | list[float]
+_Matrix = list[list[float]]
+_FlatMesh = tuple[str, NDArray[np.float64], NDArray[np.uint32], tuple[float, float, float], float, float]
+_Progress = Callable[[int, int], object]
+
+class _PlacedArrays(TypedDict):
+    positions: NDArray[np.float64]
+    normals: NDArray[np.float32]
+    triangles: NDArray[np.int64]
+
+class _VisibilityArrays(TypedDict):
+    values: NDArray[np.float32]
+    channels: int
+    valid: NDArray[np.bool_]
+    standard_error: NDArray[np.float32] | None
+    placed: _PlacedArrays | None
+    info: str
+
+class _PictureArrays(TypedDict):
+    linear: NDArray[np.float32]
+    srgb: NDArray[np.uint8]
+    visibility: _VisibilityArrays
+
+class _LightPointArrays(TypedDict):
+    parameters: NDArray[np.float32]
+    positions: NDArray[np.float64]
+    rows: int
+    at_infinity: bool
+
+class _ShippedLight(TypedDict):
+    shape: str
+    sizes: list[float]
+    position: tuple[float, float, float]
+    target: tuple[float, float, float]
+    up: tuple[float, float, float]
+    radiance: tuple[float, float, float]
+
+class _ShippedCamera(TypedDict):
+    eye: tuple[float, float, float]
+    target: tuple[float, float, float]
+    up: tuple[float, float, float]
+    fov_y_deg: float
+    size: tuple[int, int]
+
+class _ShippedScene(TypedDict):
+    description: str
+    scene: Scene
+    light: _ShippedLight
+    camera: _ShippedCamera
+
+@final
+class Context:
+    def __new__(cls, device: str) -> Context: ...
+    @property
+    def adapter(self) -> str: ...
+
+@final
+class Scene:
+    def __new__(cls, meshes: list[_FlatMesh], notes: list[str]) -> Scene: ...
+    @staticmethod
+    def load(path: str) -> Scene: ...
+    def meshes(self) -> list[_FlatMesh]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def bounds(self) -> tuple[list[float], list[float]] | None: ...
+    @property
+    def triangle_count(self) -> int: ...
+
+@final
+class Light:
+    @staticmethod
+    def rectangle(
+        width: float,
+        height: float,
+        world_from_light: _Matrix,
+        radiance: _Vector,
+        texture: NDArray[np.float32] | None,
+    ) -> Light: ...
+    @staticmethod
+    def disc(radius: float, world_from_light: _Matrix, radiance: _Vector) -> Light: ...
+    @staticmethod
+    def sphere(radius: float, world_from_light: _Matrix, radiance: _Vector) -> Light: ...
+    @staticmethod
+    def polygon(outline: list[list[float]], world_from_light: _Matrix, radiance: _Vector) -> Light: ...
+    @staticmethod
+    def sun(azimuth: float, elevation: float, diameter_deg: float, up: str, radiance: _Vector) -> Light: ...
+
+@final
+class Camera:
+    def __new__(
+        cls, world_from_camera: _Matrix, intrinsics: tuple[float, float, float, float], size: tuple[int, int]
+    ) -> Camera: ...
+    @staticmethod
+    def with_fov(world_from_camera: _Matrix, fov_y_deg: float, size: tuple[int, int]) -> Camera: ...
+
+def adapters() -> str: ...
+def look_at(eye: _Vector, target: _Vector, up: _Vector | None = None) -> _Matrix: ...
+def default_material() -> tuple[tuple[float, float, float], float, float]: ...
+def technique_defaults() -> str: ...
+def check_technique(technique: str) -> None: ...
+def shipped_names() -> list[str]: ...
+def shipped_scene(name: str) -> _ShippedScene: ...
+def png_grey16(values: NDArray[np.float32], size: tuple[int, int]) -> bytes: ...
+def png_srgb8(colors: NDArray[np.uint8], size: tuple[int, int]) -> bytes: ...
+def visibility(
+    context: Context,
+    scene: Scene,
+    lights: list[Light],
+    *,
+    camera: Camera | None,
+    points: NDArray[np.float64] | None,
+    normals: NDArray[np.float64] | None,
+    technique: str,
+    memory_limit: int | None,
+    standard_error: bool,
+    receivers: bool,
+    progress: _Progress | None,
+) -> _VisibilityArrays: ...
+def render(
+    context: Context,
+    scene: Scene,
+    lights: list[Light],
+    *,
+    camera: Camera,
+    technique: str,
+    shading: str,
+    exposure: float,
+    background: _Vector | None,
+    memory_limit: int | None,
+    progress: _Progress | None,
+) -> _PictureArrays: ...
+def compare(
+    context: Context,
+    scene: Scene,
+    light: Light,
+    *,
+    camera: Camera | None,
+    points: NDArray[np.float64] | None,
+    normals: NDArray[np.float64] | None,
+    techniques: list[str],
+    reference: str,
+    repeats: int,
+    progress: _Progress | None,
+) -> str: ...
+def light_points(
+    scene: Scene,
+    light: Light,
+    pattern: str,
+    count: int,
+    seed: int,
+    receivers: NDArray[np.float64],
+) -> _LightPointArrays: ...
