@@ -1,14 +1,35 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TypedDict, final
 
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = [
+    "Camera",
+    "Context",
+    "Light",
+    "Scene",
+    "__version__",
+    "adapters",
+    "check_technique",
+    "compare",
+    "default_material",
+    "light_points",
+    "look_at",
+    "png_grey16",
+    "png_srgb8",
+    "render",
+    "shipped_names",
+    "shipped_scene",
+    "technique_defaults",
+    "visibility",
+]
+
 __version__: str
 
 _Vector = tuple[float, float, float] | list[float]
 _Matrix = list[list[float]]
-_FlatMesh = tuple[str, NDArray[np.float64], NDArray[np.uint32], tuple[float, float, float], float, float]
+_FlatMesh = tuple[str, NDArray[np.float64], NDArray[np.uint32], _Vector, float, float]
 _Progress = Callable[[int, int], object]
 
 class _PlacedArrays(TypedDict):
@@ -38,17 +59,17 @@ class _LightPointArrays(TypedDict):
 class _ShippedLight(TypedDict):
     shape: str
     sizes: list[float]
-    position: tuple[float, float, float]
-    target: tuple[float, float, float]
-    up: tuple[float, float, float]
-    radiance: tuple[float, float, float]
+    position: list[float]
+    target: list[float]
+    up: list[float]
+    radiance: list[float]
 
 class _ShippedCamera(TypedDict):
-    eye: tuple[float, float, float]
-    target: tuple[float, float, float]
-    up: tuple[float, float, float]
+    eye: list[float]
+    target: list[float]
+    up: list[float]
     fov_y_deg: float
-    size: tuple[int, int]
+    size: list[int]
 
 class _ShippedScene(TypedDict):
     description: str
@@ -64,7 +85,7 @@ class Context:
 
 @final
 class Scene:
-    def __new__(cls, meshes: list[_FlatMesh], notes: list[str]) -> Scene: ...
+    def __new__(cls, meshes: Sequence[_FlatMesh], notes: list[str]) -> Scene: ...
     @staticmethod
     def load(path: str) -> Scene: ...
     def meshes(self) -> list[_FlatMesh]: ...
@@ -104,7 +125,7 @@ class Camera:
 
 def adapters() -> str: ...
 def look_at(eye: _Vector, target: _Vector, up: _Vector | None = None) -> _Matrix: ...
-def default_material() -> tuple[tuple[float, float, float], float, float]: ...
+def default_material() -> tuple[list[float], float, float]: ...
 def technique_defaults() -> str: ...
 def check_technique(technique: str) -> None: ...
 def shipped_names() -> list[str]: ...

@@ -103,8 +103,7 @@ def _doctor(options: argparse.Namespace) -> int:
 
 
 def _make(options: argparse.Namespace, make: Any) -> int:
-    # Told before the work is done, not after.
-    png_or_npy(options.output)
+    _check_output(options.output)
     scene, lights, camera = _scene_lights_camera(options)
     settings = {"technique": options.technique, "device": options.device, "progress": _say_progress}
     result: Picture | Visibility = make(scene, lights, camera=camera, **settings)
@@ -142,6 +141,13 @@ def _scene_lights_camera(options: argparse.Namespace) -> Any:
         )
     lights = options.light or [light or lit_from_above(scene)]
     return scene, lights[0] if len(lights) == 1 else lights, camera
+
+
+def _check_output(path: str) -> None:
+    """Raises before any work is done where its result could not be written."""
+    png_or_npy(path)
+    if not Path(path).resolve().parent.is_dir():
+        raise SettingsError(f"{path}: there is no such folder")
 
 
 def _say(text: str) -> None:

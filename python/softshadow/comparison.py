@@ -43,11 +43,9 @@ class Comparison:
         return json.dumps(vars(self), indent=2)
 
     def __str__(self) -> str:
-        flat = [_flat(row) for row in self.rows]
-        columns = list(dict.fromkeys(name for row in flat for name in row))
-        table = [columns] + [[_cell(row.get(name)) for name in columns] for row in flat]
-        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-        return "\n".join("  ".join(map(str.rjust, line, widths)) for line in table)
+        lines = [list(_COLUMNS)] + [[_cell(row, path) for path in _COLUMNS.values()] for row in self.rows]
+        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+        return "\n".join("  ".join(map(str.rjust, line, widths)) for line in lines)
 
     def __repr__(self) -> str:
         return f"<Comparison of {len(self.rows)} techniques>"
@@ -106,17 +104,28 @@ def compare(
     return Comparison(**json.loads(text))
 
 
-def _flat(row: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    cells: dict[str, Any] = {}
-    for name, value in row.items():
-        if isinstance(value, dict):
-            cells |= _flat(value, f"{prefix}{name}.")
-        elif not isinstance(value, list):
-            cells[prefix + name] = value
-    return cells
+# What the table shows, and where a row keeps it. Errors are those of the penumbra.
+_COLUMNS: dict[str, tuple[str, ...]] = {
+    "technique": ("technique",),
+    "ms": ("median_ms",),
+    "bytes": ("bytes",),
+    "RMSE": ("penumbra", "rmse"),
+    "p99": ("penumbra", "p99"),
+    "max": ("penumbra", "max"),
+    "bias": ("penumbra", "bias"),
+    "leaks": ("leak_fraction",),
+    "false shadows": ("false_shadow_fraction",),
+    "gross": ("gross_errors",),
+}
 
 
-def _cell(value: object) -> str:
+def _cell(row: dict[str, Any], path: tuple[str, ...]) -> str:
+    value: Any = row
+    for name in path:
+        value = None if value is None else value[name]
     if value is None:
         return "-"
+    if isinstance(value, dict):
+        settings = ", ".join(f"{name}={setting}" for name, setting in value.items() if name != "name")
+        return f"{value['name']}({settings})"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

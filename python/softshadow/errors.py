@@ -6,7 +6,7 @@ class SoftShadowError(Exception):
 
 
 class SceneError(SoftShadowError, ValueError):
-    """A scene, light, camera or receiver that cannot be used; the message names it and the first bad index."""
+    """A scene, light, camera or receiver that cannot be used; messages name it and the first bad index."""
 
 
 class SceneFileNotFound(SceneError, FileNotFoundError):

@@ -25,8 +25,8 @@ class LightPoints:
     positions : float64, (samples, 3), for a sphere (receivers, samples, 3)
         World coordinates; directions towards the light where `at_infinity`.
     parameters : float32, (samples, 2)
-        Place on the light: [-1, 1]² on a rectangle, the unit disc on disc, sphere and sun, light-local world units
-        on a polygon.
+        Place on the light: [-1, 1]² on a rectangle, the unit disc on disc, sphere and sun, light-local world
+        units on a polygon.
     at_infinity : bool
         True for a sun.
     """

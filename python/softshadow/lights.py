@@ -1,8 +1,8 @@
 """Area lights.
 
-A light lies in its local XY plane and emits along local −Z; sizes are full widths and heights in world units. It
-does not block light itself. ``world_from_light`` is a rotation and a translation, as :func:`softshadow.look_at`
-makes them. A light of size zero is allowed: its shadow is hard.
+A light lies in its local XY plane and emits along local −Z; sizes are full widths and heights in world units.
+It does not block light itself. ``world_from_light`` is a rotation and a translation, which
+:func:`softshadow.look_at` makes. A light of size zero is allowed: its shadow is hard.
 """
 
 from __future__ import annotations
@@ -173,7 +173,8 @@ class SunLight(Light):
     Parameters
     ----------
     azimuth : float
-        Degrees clockwise from north, seen from above. East is +X; north is −Z with ``up="y"``, +Y with ``up="z"``.
+        Degrees clockwise from north, seen from above. East is +X; north is −Z with ``up="y"`` and +Y with
+        ``up="z"``.
     elevation : float
         Degrees above the horizon.
     diameter_deg : float

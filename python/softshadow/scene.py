@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .by_value import ByValue, set_fields
-from .checks import color, floats, frozen, integers, real
+from .checks import color, floats, frozen, integers, real, vector
 from .errors import SceneError
 
 if TYPE_CHECKING:
     import trimesh
 
-_BASE_COLOR, _ROUGHNESS, _SPECULAR = _core.default_material()
+_material = _core.default_material()
+_BASE_COLOR, _ROUGHNESS, _SPECULAR = vector("base_color", _material[0]), *_material[1:]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -157,7 +158,8 @@ class Scene:
     def from_trimesh(cls, source: trimesh.Trimesh | trimesh.Scene) -> Scene:
         """A scene from trimesh, which is read and never changed: nothing is merged, repaired or cached.
 
-        Every instance in a scene's graph becomes a mesh of its own, with its transform and its node's name. Base colours are taken where one material or one colour covers a mesh; what is left out is listed in
+        Every instance in a scene's graph becomes a mesh of its own, with its transform and its node's name.
+        Base colours are taken where one material or one colour covers a mesh; what is left out is listed in
         :attr:`notes`.
 
         Raises
@@ -221,7 +223,7 @@ def _copied(scene: _core.Scene) -> tuple[Mesh, ...]:
             name=name,
             vertices=vertices.reshape(-1, 3),
             faces=faces.reshape(-1, 3),
-            base_color=base_color,
+            base_color=vector("base_color", base_color),
             roughness=roughness,
             specular=specular,
         )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from . import _core
 from .camera import Camera, look_at
+from .checks import image_size, vector
 from .errors import SceneError
 from .lights import DiscLight, Light, RectLight, SphereLight, SunLight
 from .scene import Scene
@@ -44,7 +45,11 @@ def load(name: str) -> ShippedScene:
     source = _core.shipped_scene(name)
     view = source["camera"]
     camera = Camera.look_at(
-        eye=view["eye"], target=view["target"], up=view["up"], fov_y_deg=view["fov_y_deg"], size=view["size"]
+        eye=view["eye"],
+        target=view["target"],
+        up=view["up"],
+        fov_y_deg=view["fov_y_deg"],
+        size=image_size(view["size"]),
     )
     return ShippedScene(
         name=name,
@@ -56,7 +61,7 @@ def load(name: str) -> ShippedScene:
 
 
 def _light(source: _core._ShippedLight) -> Light:
-    sizes, radiance = source["sizes"], source["radiance"]
+    sizes, radiance = source["sizes"], vector("radiance", source["radiance"])
     if source["shape"] == "sun":
         east, height, south = (p - t for p, t in zip(source["position"], source["target"], strict=True))
         azimuth = math.degrees(math.atan2(east, -south))

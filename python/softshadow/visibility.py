@@ -32,8 +32,8 @@ class Visibility:
     Attributes
     ----------
     values : float32, (H, W) or (points,), with several lights (lights, H, W) or (lights, points)
-        The visible share of the light: 1 is fully lit. A textured light adds a last axis of 3. NaN only where the
-        camera sees nothing.
+        The visible share of the light: 1 is fully lit. A textured light adds a last axis of 3. NaN only
+        where the camera sees nothing.
     valid : bool, (H, W) or (points,)
         False only where the camera sees nothing.
     standard_error : float32 like `values`, or None
@@ -111,8 +111,8 @@ def visibility(
     points : (n, 3) float
         Receivers in world coordinates.
     normals : (n, 3) float, optional
-        For each point, of any length but zero: light from below the horizon is then not visible. A flat light is
-        never visible from behind.
+        For each point, of any length but zero: light from below the horizon is then not visible. A flat light
+        is never visible from behind.
     technique : RayTraced or HardShadowMap
         How it is computed.
     device : {"auto", "gpu", "software"} or int

@@ -22,10 +22,15 @@ fn begin(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let view = light_view(light, receiver.position);
     let hidden = receiver.kind == RECEIVER_NONE || !view.exists;
     let open = view.inside && !hidden;
+    // Most receivers have the whole light above their horizon: no sample has to be asked.
+    let ways = light_way_bounds(light, view, receiver.position);
+    let lowest = min(receiver.normal * ways.low, receiver.normal * ways.high);
+    let magnitude = max(abs(ways.low), abs(ways.high));
+    let all_above = dot(lowest, vec3<f32>(1.0)) > 4e-6 * dot(magnitude, vec3<f32>(1.0));
     for (var word = 0u; word < sampling.words; word++) {
         var mask = select(0u, 0xffffffffu, hidden);
         let here = min(32u, sampling.count - 32u * word);
-        for (var bit = 0u; bit < select(here, 0u, hidden || open); bit++) {
+        for (var bit = 0u; bit < select(here, 0u, hidden || open || all_above); bit++) {
             let way = light_way(light_sample(light, view, light_samples[32u * word + bit]), receiver.position);
             mask |= select(0u, 1u << bit, below_horizon(receiver, way));
         }

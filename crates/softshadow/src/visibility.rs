@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use softshadow_engine::{RunReport, StageReport, Timing};
 use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
+use softshadow_techniques::parts::VISIBILITY;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
 use softshadow_techniques::parts::shading::COLOR;
-use softshadow_techniques::ray_traced::{BLOCKED, STANDARD_ERROR, VISIBILITY};
+use softshadow_techniques::ray_traced::{BLOCKED, STANDARD_ERROR};
 use softshadow_techniques::{
     Block, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
 };

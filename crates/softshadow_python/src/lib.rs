@@ -10,6 +10,7 @@ mod compare;
 mod context;
 mod detached;
 mod errors;
+mod forked;
 mod image;
 mod light;
 mod light_points;

@@ -20,10 +20,10 @@ use softshadow_plan::{
 use softshadow_scene::{Light, LightShape, SamplePattern};
 
 use crate::TechniqueError;
+use crate::parts::VISIBILITY;
 use crate::parts::light_buffers::{self, SampleSet, Sampling};
 use crate::parts::shading::{self, Seen};
 use crate::parts::{receivers, scene_buffers};
-use crate::ray_traced::VISIBILITY;
 use crate::request::{ReceiverSource, Request};
 
 /// Settings of `hard_shadow_map`.

@@ -21,6 +21,7 @@ use softshadow_plan::{Kernel, Over, Plan, ResourceId, Values};
 use softshadow_scene::{Light, MAX_SAMPLES, SamplePattern};
 
 use crate::TechniqueError;
+use crate::parts::VISIBILITY;
 use crate::parts::light_buffers::{self, SampleSet, Sampling};
 use crate::parts::shading::{self, Seen};
 use crate::parts::{receivers, scene_buffers};
@@ -69,26 +70,29 @@ mod pattern_name {
     }
 }
 
-/// Label of the values.
-pub const VISIBILITY: &str = "visibility";
 /// Label of their standard errors.
 pub const STANDARD_ERROR: &str = "standard error";
 /// Label of the masks of blocked samples.
 pub const BLOCKED: &str = "blocked samples";
 
 const BEGIN: Kernel = Kernel { file: "ray_traced/begin.wgsl", entry: "begin" };
+const GATHER: Kernel = Kernel { file: "ray_traced/gather.wgsl", entry: "gather" };
+const COUNT_GROUPS: Kernel = Kernel { file: "ray_traced/count_groups.wgsl", entry: "count_groups" };
 const TRACE: Kernel = Kernel { file: "ray_traced/trace.wgsl", entry: "trace" };
 const CHOOSE: Kernel = Kernel { file: "ray_traced/choose.wgsl", entry: "choose" };
 const RESOLVE: Kernel = Kernel { file: "ray_traced/resolve.wgsl", entry: "resolve" };
 const RESOLVE_TEXTURED: Kernel = Kernel { file: "ray_traced/resolve.wgsl", entry: "resolve_textured" };
 
-/// `TraceRange` of `trace.wgsl`.
+/// `TraceRange` of `hierarchy.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct TraceRange {
     first_sample: u32,
     node_count: u32,
 }
+
+/// Bytes of `Candidate` of `hierarchy.wgsl`.
+const CANDIDATE_BYTES: u64 = 12;
 
 /// `ProbeImage` of `choose.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -114,8 +118,8 @@ impl RayTraced {
     }
 
     pub(crate) fn bytes_per_receiver(&self, channels: u64) -> u64 {
-        // Masks, the number of samples decided, values and their errors.
-        u64::from(self.words()) * 4 + 4 + 8 * channels
+        // Masks, the number of samples decided, the candidate, values and their errors.
+        u64::from(self.words()) * 4 + 4 + CANDIDATE_BYTES + 8 * channels
     }
 
     fn words(&self) -> u32 {
@@ -159,10 +163,36 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
             None => scene_buffers::append_corners(&mut plan, request.scene),
         };
         let nodes = scene_buffers::append_nodes(&mut plan, request.scene);
-        let trace = |plan: &mut Plan, stage: &str, why: &str, rays: u32| {
+        let gather_range = |plan: &mut Plan, stage: &str, index: usize| {
+            plan.parameter(format!("{stage} range {index}"), size_of::<TraceRange>() as u64)
+        };
+        let mut candidates = Vec::with_capacity(corners.len());
+        for (index, nodes) in nodes.iter().enumerate() {
+            let list = plan.buffer(format!("candidates {index}"), count as u64 * CANDIDATE_BYTES);
+            let length = plan.buffer(format!("candidate count {index}"), 4);
+            let range = gather_range(&mut plan, "gather", index);
+            plan.clear(format!("empty list {index}"), "no candidate yet", length);
+            let why = "finds the receivers with anything between them and the light";
+            plan.compute(format!("gather {index}"), why, GATHER, items(4))
+                .bind("light", light.light)
+                .bind("trace_range", range)
+                .bind("receivers", receivers)
+                .bind("nodes", *nodes)
+                .bind("decided", decided)
+                .bind("candidates", list)
+                .bind("candidate_count", length);
+            let size = plan.buffer(format!("dispatch size {index}"), 12);
+            let why = "sizes the dispatch over the candidates";
+            let once = Over::Items { count: 1, work_per_item: 1 };
+            plan.compute(format!("count groups {index}"), why, COUNT_GROUPS, once)
+                .bind("candidate_count", length)
+                .bind("dispatch_size", size);
+            candidates.push((list, length, size));
+        }
+        let trace = |plan: &mut Plan, stage: &str, why: &str| {
             for index in 0..corners.len() {
-                let range = plan.parameter(format!("{stage} range {index}"), size_of::<TraceRange>() as u64);
-                plan.compute(format!("{stage} {index}"), why, TRACE, items(rays))
+                let range = gather_range(plan, stage, index);
+                plan.compute(format!("{stage} {index}"), why, TRACE, Over::Indirect(candidates[index].2))
                     .bind("light", light.light)
                     .bind("sampling", light.sampling)
                     .bind("trace_range", range)
@@ -171,15 +201,17 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
                     .bind("nodes", nodes[index])
                     .bind("corners", corners[index])
                     .bind("decided", decided)
+                    .bind("candidates", candidates[index].0)
+                    .bind("candidate_count", candidates[index].1)
                     .bind("blocked", blocked);
             }
         };
         if settings.probes == 0 {
-            trace(&mut plan, "trace", "traces every sample", settings.samples);
+            trace(&mut plan, "trace", "traces every sample of the candidates");
         } else {
-            trace(&mut plan, "probe", "traces the first samples of every receiver", settings.probes);
+            trace(&mut plan, "probe", "traces the first samples of the candidates");
             append_choice(&mut plan, items(settings.probes / 4 + 1), [light.sampling, receivers, blocked, decided]);
-            trace(&mut plan, "trace", "traces the other samples where the probes disagree", settings.samples);
+            trace(&mut plan, "trace", "traces the other samples where the probes disagree");
         }
     }
     append_results(&mut plan, request, settings, &light, [receivers, blocked, decided]);
@@ -252,7 +284,7 @@ pub(crate) fn values(
     values.insert("sampling".into(), bytemuck::bytes_of(&settings.sampling(pass)).to_vec());
     for (index, sub_scene) in request.scene.local.sub_scenes.iter().enumerate() {
         let node_count = sub_scene.nodes.len() as u32;
-        for (stage, first_sample) in [("probe", 0), ("trace", settings.probes)] {
+        for (stage, first_sample) in [("gather", 0), ("probe", 0), ("trace", settings.probes)] {
             let range = TraceRange { first_sample, node_count };
             values.insert(format!("{stage} range {index}"), bytemuck::bytes_of(&range).to_vec());
         }

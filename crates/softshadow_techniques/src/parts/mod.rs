@@ -4,3 +4,6 @@ pub mod light_buffers;
 pub mod receivers;
 pub mod scene_buffers;
 pub mod shading;
+
+/// Label of the buffer in which every technique leaves its values.
+pub const VISIBILITY: &str = "visibility";

@@ -1,0 +1,22 @@
+//! The front door against what is true: closed forms, exact unions, a float64 tracer on the same samples, invariances,
+//! contact, backends, lights, blocks and bad input. One binary, so that wgpu is linked once.
+//!
+//! Every comparator here is also shown something spoilt, which it has to refuse. Measured figures are printed: run with
+//! `--nocapture` to read them.
+#![allow(clippy::print_stdout, reason = "the figures that are measured are part of what these tests say")]
+
+mod agreement;
+mod backends;
+mod bad_input;
+mod blocks;
+mod closed_forms;
+mod common;
+mod contact;
+mod coverage;
+mod hard_shadows;
+mod invariance;
+mod lights;
+mod samples;
+mod same_samples;
+mod shapes;
+mod watertight;

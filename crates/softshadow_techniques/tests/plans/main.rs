@@ -1,0 +1,9 @@
+//! Every technique over a grid of requests: plans pass their check, weigh what a person counts, are equal where requests are,
+//! and hold nothing that nobody asked for.
+
+mod bytes;
+mod lean;
+mod limits;
+mod program;
+mod requests;
+mod snapshots;

@@ -1,0 +1,84 @@
+//! The program of a whole call: every block, light and pass once, in that order, with receivers first and results last.
+
+use softshadow_plan::{Host, Program, Step, check};
+use softshadow_techniques::{RayTraced, Shading, StageTask, Technique, VisibilityProgram, Wants, blocks};
+
+use crate::requests::Fixture;
+
+fn program<'a>(fixture: &'a Fixture, technique: &'a Technique) -> VisibilityProgram<'a> {
+    VisibilityProgram {
+        technique,
+        scene: &fixture.scenes[1],
+        lights: &fixture.lights[..2],
+        receivers: fixture.camera(),
+        // Four rows of eight pixels, two at a time.
+        blocks: blocks(32, 8, 0, 16),
+        channels: 1,
+        wants: Wants { picture: Some(Shading::Integrated), ..Wants::default() },
+        host: Host::default(),
+    }
+}
+
+fn passes(passes: u32) -> Technique {
+    Technique::RayTraced(RayTraced { passes, samples: 4, ..RayTraced::default() })
+}
+
+#[test]
+fn every_block_light_and_pass_has_its_stage() {
+    let (fixture, technique) = (Fixture::new(), passes(3));
+    let program = program(&fixture, &technique);
+    program.check().unwrap();
+    assert_eq!(program.stages(), 2 * 2 * 3);
+    let tasks: Vec<StageTask> = (0..).map_while(|index| program.task(index)).collect();
+    let mut expected = Vec::new();
+    for block in 0..2 {
+        for light in 0..2 {
+            expected.extend((0..3).map(|pass| StageTask { block, light, pass }));
+        }
+    }
+    assert_eq!(tasks, expected);
+}
+
+#[test]
+fn stages_open_and_close_their_blocks() {
+    let (fixture, technique) = (Fixture::new(), passes(2));
+    let program = program(&fixture, &technique);
+    let mut rows = Vec::new();
+    let mut index = 0;
+    while let Step::Run(stage) = program.step(index, &[]) {
+        check(&stage.plan, &Host::default()).unwrap();
+        let has = |label: &str| stage.plan.passes.iter().any(|p| p.label == label);
+        let leaves = |label: &str| stage.plan.outputs.iter().any(|id| stage.plan.resources[id.index()].label == label);
+        rows.push([has("draw triangle ids 0"), has("place receivers 0"), leaves("visibility"), leaves("color")]);
+        index += 1;
+    }
+    // Pixels are drawn once, receivers placed once a block; values leave with a light's last pass, the picture with a block's.
+    let block =
+        |draws| [[draws, true, false, false], [false, false, true, false], [false; 4], [false, false, true, true]];
+    assert_eq!(rows, [block(true), block(false)].concat());
+}
+
+#[test]
+fn a_program_that_cannot_run_says_so_before_it_starts() {
+    let fixture = Fixture::new();
+    for (settings, word) in [
+        (RayTraced { samples: 0, ..RayTraced::default() }, "ray_traced samples: must lie between 1 and 65536, got 0"),
+        (
+            RayTraced { samples: 65_537, ..RayTraced::default() },
+            "ray_traced samples: must lie between 1 and 65536, got 65537",
+        ),
+        (RayTraced { passes: 0, ..RayTraced::default() }, "ray_traced passes: must be at least 1"),
+        (
+            RayTraced { probes: 64, ..RayTraced::default() },
+            "ray_traced probes: must be fewer than the 64 samples, or 0 for none",
+        ),
+    ] {
+        let technique = Technique::RayTraced(settings);
+        assert_eq!(program(&fixture, &technique).check().unwrap_err().to_string(), word);
+    }
+    for resolution in [15, 16_385] {
+        let technique = Technique::HardShadowMap(softshadow_techniques::HardShadowMap { resolution });
+        let words = program(&fixture, &technique).check().unwrap_err().to_string();
+        assert_eq!(words, format!("hard_shadow_map resolution: must lie between 16 and 16384, got {resolution}"));
+    }
+}

@@ -1,0 +1,128 @@
+//! The grid: scenes, lights, receivers, techniques, and what is wanted.
+
+use softshadow_plan::{Host, Plan, Values};
+use softshadow_scene::{
+    Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, SamplePattern, Scene, look_at,
+};
+use softshadow_techniques::{
+    Block, HardShadowMap, RayTraced, ReceiverSource, Request, SceneContents, Shading, Technique, Wants,
+};
+
+/// Width and height of the grid's images.
+pub(crate) const SIZE: [u32; 2] = [8, 4];
+/// How many points the grid's point requests have.
+pub(crate) const POINTS: usize = 5;
+
+/// Everything that requests refer to.
+pub(crate) struct Fixture {
+    /// Without triangles, with one sub-scene, with two.
+    pub(crate) scenes: [SceneContents; 3],
+    pub(crate) camera: Camera,
+    pub(crate) points: Points,
+    /// A rectangle above the scene, a rectangle within it, a sphere, a sun, and a rectangle with a texture.
+    pub(crate) lights: Vec<Light>,
+}
+
+impl Fixture {
+    pub(crate) fn new() -> Self {
+        let rows = |z: f64| [[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]];
+        let sheet = |z| Mesh::new("sheet", rows(z).to_vec(), vec![[0, 1, 2], [0, 2, 3]], Material::default()).unwrap();
+        let sheets = Scene::new(vec![sheet(0.0), sheet(0.5)]).unwrap();
+        let contents = |scene: &Scene, binding| SceneContents::new(LocalScene::new(scene, None, binding).unwrap());
+        // Two hierarchy nodes of 32 bytes a triangle: 128 bytes hold two of the four triangles.
+        let scenes =
+            [contents(&Scene::new(Vec::new()).unwrap(), 1 << 20), contents(&sheets, 1 << 20), contents(&sheets, 128)];
+        assert_eq!(scenes.each_ref().map(|s| s.local.sub_scenes.len()), [0, 1, 2]);
+        let down = |from| look_at(from, [0.0, 0.0, -9.0], Some([0.0, 1.0, 0.0])).unwrap();
+        let light = |shape, from| Light::new(shape, down(from)).unwrap();
+        let rectangle = LightShape::Rectangle { width: 1.0, height: 0.5 };
+        let texture = LightTexture::new(2, 1, vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
+        let lights = vec![
+            light(rectangle.clone(), [0.0, 0.0, 5.0]),
+            light(rectangle.clone(), [0.0, 0.0, 0.25]),
+            light(LightShape::Sphere { radius: 0.5 }, [0.0, 0.0, 5.0]),
+            light(LightShape::Sun { angular_diameter: 0.01 }, [0.0, 0.0, 5.0]),
+            light(rectangle, [0.0, 0.0, 5.0]).with_texture(texture).unwrap(),
+        ];
+        let positions = (0..POINTS).map(|n| [0.1 * n as f64, 0.0, 0.1]).collect();
+        Self {
+            scenes,
+            camera: Camera::look_at([3.0, 0.5, 4.0], [0.0; 3], None, 45.0, SIZE).unwrap(),
+            points: Points::new(positions, Some(vec![[0.0, 0.0, 1.0]; POINTS])).unwrap(),
+            lights,
+        }
+    }
+
+    pub(crate) fn camera(&self) -> ReceiverSource<'_> {
+        ReceiverSource::Camera(&self.camera)
+    }
+
+    pub(crate) fn points(&self) -> ReceiverSource<'_> {
+        ReceiverSource::Points(&self.points)
+    }
+
+    /// A request for everything at once in one block; the tests change what they are about.
+    pub(crate) fn request<'a>(&'a self, scene: usize, receivers: ReceiverSource<'a>) -> Request<'a> {
+        Request {
+            scene: &self.scenes[scene],
+            receivers,
+            block: Block { first: 0, count: receivers.count(), skip: 0, keep: receivers.count() },
+            light: &self.lights[0],
+            channels: 1,
+            opens_block: true,
+            opens_run: true,
+            closes_light: true,
+            closes_block: true,
+            wants: Wants::default(),
+            host: Host::default(),
+        }
+    }
+
+    /// The whole grid.
+    pub(crate) fn requests(&self) -> Vec<Request<'_>> {
+        let mut grid = Vec::new();
+        let wants = |picture, all| Wants { standard_error: all, receivers: all, sample_masks: all, picture };
+        // First of all stages, first of a block, a middle one, the last.
+        let places = [[true, true, true, true], [false, true, false, false], [false; 4], [false, false, true, true]];
+        for scene in 0..self.scenes.len() {
+            for receivers in [self.camera(), self.points()] {
+                for (index, light) in self.lights.iter().enumerate() {
+                    for picture in [None, Some(Shading::Integrated), Some(Shading::Modulated)] {
+                        for [opens_run, opens_block, closes_light, closes_block] in places {
+                            let channels = if index == 4 { 3 } else { 1 };
+                            let wants = wants(picture, index % 2 == 0);
+                            let base = self.request(scene, receivers);
+                            grid.push(Request {
+                                light,
+                                channels,
+                                opens_run,
+                                opens_block,
+                                closes_light,
+                                closes_block,
+                                wants,
+                                ..base
+                            });
+                        }
+                    }
+                }
+            }
+        }
+        grid
+    }
+}
+
+pub(crate) fn techniques() -> Vec<Technique> {
+    let traced = |samples, probes, passes| {
+        let pattern = if samples % 2 == 0 { SamplePattern::Stratified } else { SamplePattern::LowDiscrepancy };
+        Technique::RayTraced(RayTraced { samples, probes, passes, pattern, seed: 7 })
+    };
+    let mut all = Technique::defaults();
+    all.extend([traced(1, 0, 1), traced(33, 8, 3), traced(64, 63, 1), traced(1000, 0, 2)]);
+    all.extend([16, 300].map(|resolution| Technique::HardShadowMap(HardShadowMap { resolution })));
+    all
+}
+
+/// The plan and the values of a request's first pass.
+pub(crate) fn stage(technique: &Technique, request: &Request<'_>) -> (Plan, Values) {
+    (technique.plan(request), technique.values(request, request.light, 0).unwrap())
+}

@@ -1,0 +1,47 @@
+//! A handful of plans as text: what a change to a technique changes stands in the diff.
+
+use softshadow_techniques::{HardShadowMap, RayTraced, Request, Shading, Technique};
+
+use crate::requests::Fixture;
+
+fn traced(probes: u32) -> Technique {
+    Technique::RayTraced(RayTraced { probes, ..RayTraced::default() })
+}
+
+#[test]
+fn ray_traced_points() {
+    let fixture = Fixture::new();
+    insta::assert_snapshot!(traced(0).plan(&fixture.request(1, fixture.points())));
+}
+
+#[test]
+fn ray_traced_everything() {
+    let fixture = Fixture::new();
+    let mut request = Request { light: &fixture.lights[4], channels: 3, ..fixture.request(2, fixture.camera()) };
+    request.wants.picture = Some(Shading::Integrated);
+    request.wants.standard_error = true;
+    request.wants.sample_masks = true;
+    insta::assert_snapshot!(traced(8).plan(&request));
+}
+
+#[test]
+fn ray_traced_second_light() {
+    let fixture = Fixture::new();
+    let request = fixture.request(1, fixture.camera());
+    insta::assert_snapshot!(traced(0).plan(&Request { opens_block: false, opens_run: false, ..request }));
+}
+
+#[test]
+fn hard_shadow_map_within_the_scene() {
+    let fixture = Fixture::new();
+    let mut request = Request { light: &fixture.lights[1], ..fixture.request(1, fixture.points()) };
+    request.wants.picture = Some(Shading::Modulated);
+    let technique = Technique::HardShadowMap(HardShadowMap { resolution: 512 });
+    insta::assert_snapshot!(technique.plan(&request));
+}
+
+#[test]
+fn explanation() {
+    let fixture = Fixture::new();
+    insta::assert_snapshot!(traced(8).plan(&fixture.request(1, fixture.camera())).explain());
+}

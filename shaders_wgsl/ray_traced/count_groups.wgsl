@@ -1,0 +1,18 @@
+// Turns the number of candidates into the size of an indirect dispatch, in rows where one row would exceed the limit.
+//#import shared/slice.wgsl
+
+const GROUP: u32 = 64u;
+const LARGEST_ROW: u32 = 65535u;
+
+@group(0) @binding(0) var<uniform> slice: Slice;
+@group(0) @binding(1) var<storage, read> candidate_count: u32;
+@group(0) @binding(2) var<storage, read_write> dispatch_size: array<u32, 3>;
+
+@compute @workgroup_size(1)
+fn count_groups() {
+    let groups = (candidate_count + GROUP - 1u) / GROUP * slice.count;
+    let rows = (groups + LARGEST_ROW - 1u) / LARGEST_ROW;
+    dispatch_size[0] = min(groups, LARGEST_ROW);
+    dispatch_size[1] = rows;
+    dispatch_size[2] = 1u;
+}

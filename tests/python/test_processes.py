@@ -1,0 +1,156 @@
+"""Threads, forks, interruption, and what is announced once."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import warnings
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from conftest import camera_above, light_above, visibility
+
+import softshadow as ss
+
+BUSY = {"camera": camera_above((64, 64)), "technique": ss.RayTraced(samples=256)}
+
+
+def test_other_threads_run_while_a_call_computes():
+    scene = ss.scenes.load("hall").scene
+    counted, stop = 0, threading.Event()
+
+    def count() -> None:
+        nonlocal counted
+        while not stop.wait(0.0005):
+            counted += 1
+
+    thread = threading.Thread(target=count)
+    seen = []
+    thread.start()
+    # A switch interval longer than the call: the other thread runs only if the interpreter is released.
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(100)
+    try:
+        before = counted
+        visibility(scene, light_above(), camera=camera_above((64, 64)), technique=ss.RayTraced(samples=1024))
+        seen.append(counted - before)
+    finally:
+        sys.setswitchinterval(interval)
+        stop.set()
+        thread.join()
+    assert seen[0] > 3
+
+
+def test_threads_share_a_scene_and_a_device(scene):
+    expected = visibility(scene, light_above(), **BUSY).values
+    with ThreadPoolExecutor(4) as pool:
+        results = list(pool.map(lambda _: visibility(scene, light_above(), **BUSY).values, range(8)))
+    for values in results:
+        np.testing.assert_array_equal(values, expected)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
+@pytest.mark.parametrize("new_scene", [False, True])
+def test_a_forked_child_computes(scene, new_scene):
+    expected = visibility(scene, light_above(), **BUSY).values
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            signal.alarm(60)
+            again = ss.Scene(scene.meshes) if new_scene else scene
+            values = visibility(again, light_above(), **BUSY).values
+            code = 0 if np.array_equal(values, expected, equal_nan=True) else 2
+        finally:
+            os._exit(code)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    np.testing.assert_array_equal(visibility(scene, light_above(), **BUSY).values, expected)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
+def test_a_forked_child_ends_although_the_device_was_its_parents():
+    script = """
+import os, signal, sys
+import softshadow as ss
+fork = ss.scenes.load("fork")
+ss.visibility(fork.scene, fork.light, points=[[0, 0, 0]], device="software")
+child = os.fork()
+if child == 0:
+    signal.alarm(30)
+    sys.exit(7)
+sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+    assert subprocess.run([sys.executable, "-c", script], timeout=60, check=False).returncode == 7
+
+
+def test_progress_counts_up_to_the_total(scene):
+    seen = []
+    visibility(
+        scene, light_above(), camera=camera_above((64, 64)), memory_limit=50_000, progress=lambda *p: seen.append(p)
+    )
+    assert len(seen) > 2
+    assert seen == sorted(seen)
+    assert all(0 <= done <= total for done, total in seen)
+
+
+def test_a_progress_callback_stops_the_work(scene):
+    settings = {"camera": camera_above((64, 64)), "memory_limit": 50_000}
+    calls = []
+
+    def stop(done: int, total: int) -> bool:
+        calls.append(done)
+        return False
+
+    with pytest.raises(ss.Interrupted):
+        visibility(scene, light_above(), progress=stop, **settings)
+    assert len(calls) == 1
+    with pytest.raises(ZeroDivisionError):
+        visibility(scene, light_above(), progress=lambda done, total: 1 / 0, **settings)
+    assert visibility(scene, light_above(), **settings).values.shape == (64, 64)
+
+
+def test_ctrl_c_is_heard_between_blocks(scene):
+    def press(done: int, total: int) -> None:
+        signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        visibility(scene, light_above(), camera=camera_above((64, 64)), memory_limit=50_000, progress=press)
+
+
+def test_a_software_adapter_that_nobody_asked_for_is_announced_once():
+    if ss.doctor().adapters[0]["device_type"] != "software":
+        pytest.skip("this machine has a graphics card")
+    script = """
+import warnings
+import softshadow as ss
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    for device in ("software", "auto", "auto"):
+        ss.visibility(ss.Scene(), ss.SunLight(0, 45), points=[[0, 0, 0]], device=device)
+        print(len(caught))
+assert issubclass(caught[0].category, ss.SoftwareAdapterWarning)
+assert "no graphics card" in str(caught[0].message)
+assert caught[0].filename == "<string>"
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.split() == ["0", "1", "1"]
+
+
+def test_importing_needs_numpy_alone():
+    script = """
+import sys
+import softshadow
+print(sorted(sys.modules.keys() & {"trimesh", "PIL", "matplotlib", "scipy", "tqdm"}))
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_nothing_is_warned_of_when_software_is_asked_for(scene):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        visibility(scene, light_above(), points=[[0, 0, 0]])

@@ -1,0 +1,245 @@
+"""Shapes and values of results, and the files that are made of them."""
+
+from __future__ import annotations
+
+import io
+import json
+
+import numpy as np
+import pytest
+from conftest import CARD, SQUARE, camera_above, compare, light_above, read_png, render, visibility
+
+import softshadow as ss
+
+
+def test_shapes(scene, floor_points):
+    light, camera = light_above(), camera_above((16, 12))
+    textured = light_above(texture=np.ones((2, 2, 3)))
+    n = len(floor_points)
+    for lights, leading, trailing in (
+        (light, (), ()),
+        ([light], (1,), ()),
+        ((light, light_above(2.0)), (2,), ()),
+        (textured, (), (3,)),
+        ([light, textured], (2,), (3,)),
+    ):
+        by_camera = visibility(scene, lights, camera=camera, receivers=True)
+        by_points = visibility(scene, lights, points=floor_points, receivers=True)
+        for result, shape in ((by_camera, (12, 16)), (by_points, (n,))):
+            assert result.values.shape == result.standard_error.shape == leading + shape + trailing
+            assert result.values.dtype == result.standard_error.dtype == np.float32
+            assert result.valid.shape == result.triangles.shape == shape
+            assert result.positions.shape == result.normals.shape == (*shape, 3)
+    assert visibility(scene, [light, light], points=np.empty((0, 3))).values.shape == (2, 0)
+
+
+def test_receivers_and_standard_error_come_when_asked_for(scene, floor_points):
+    bare = visibility(scene, light_above(), points=floor_points, standard_error=False)
+    assert bare.standard_error is bare.positions is bare.normals is bare.triangles is None
+    placed = visibility(scene, light_above(), points=floor_points, receivers=True)
+    np.testing.assert_allclose(placed.positions, floor_points, atol=1e-6)
+    assert (placed.triangles == -1).all()
+    in_penumbra = (placed.values > 0) & (placed.values < 1)
+    assert (placed.standard_error[in_penumbra] > 0).all()
+
+
+def test_several_lights_are_one_call_each(scene, floor_points):
+    lights = [light_above(), light_above(2.5), ss.SunLight(30, 50), ss.DiscLight(radius=0.4, world_from_light=POSE)]
+    together = visibility(scene, lights, points=floor_points).values
+    for light, values in zip(lights, together, strict=True):
+        np.testing.assert_array_equal(values, visibility(scene, light, points=floor_points).values)
+
+
+POSE = ss.look_at((1, 3, 0), (0, 0, 0))
+
+
+def test_a_texture_weighs_what_is_visible(scene):
+    """The red half of the light is hidden, the blue half is seen."""
+    half = ss.Scene.from_arrays(CARD * [1, 1, 4] * [20, 1, 20] + [10.0, 0.5, 0], SQUARE)
+    texture = np.zeros((1, 64, 3))
+    pose = ss.look_at((0, 3, 0), (0, 0, 0))
+    along_x = pose[0, 0]
+    texture[:, :32, 0] = 1
+    texture[:, 32:, 2] = 1
+    light = ss.RectLight(width=1, height=1, world_from_light=pose, texture=texture)
+    result = visibility(half, light, points=[[-0.0, 0, 0]], technique=ss.RayTraced(samples=1024))
+    red, green, blue = result.values[0]
+    seen, hidden = (red, blue) if along_x > 0 else (blue, red)
+    assert seen == pytest.approx(1, abs=0.03)
+    assert hidden == pytest.approx(0, abs=0.03)
+    # Of a colour that the light has none of, all there is is visible or nothing is: both are numbers.
+    assert np.isfinite(green)
+
+
+def test_a_light_without_size_casts_a_hard_shadow(scene, floor_points):
+    values = visibility(scene, light_above(0.0), points=floor_points).values
+    x = floor_points[:, 0]
+    expected = (x > 0.75).astype(np.float32)
+    clear = np.abs(x - 0.75) > 0.01
+    np.testing.assert_array_equal(values[clear], expected[clear])
+
+
+def test_hard_shadow_maps_are_nearly_hard(scene, floor_points):
+    result = visibility(scene, light_above(), points=floor_points, technique=ss.HardShadowMap())
+    clear = np.abs(floor_points[:, 0] - 0.75) > 0.05
+    np.testing.assert_allclose(result.values[clear], (floor_points[:, 0] > 0.75)[clear], atol=1e-3)
+    assert result.standard_error is None
+    assert result.info["technique"] == {"name": "hard_shadow_map", "resolution": 2048}
+
+
+def test_settings_change_results(scene):
+    light = light_above()
+    points = np.stack([np.linspace(0.5, 1, 40), np.full(40, 1e-3), np.linspace(0, 0.9, 40)], axis=1)
+    base = visibility(scene, light, points=points).values
+    for technique in (
+        ss.RayTraced(samples=32),
+        ss.RayTraced(pattern="low_discrepancy"),
+        ss.RayTraced(seed=1),
+        ss.RayTraced(passes=2),
+    ):
+        assert not np.array_equal(visibility(scene, light, points=points, technique=technique).values, base)
+    np.testing.assert_array_equal(visibility(scene, light, points=points).values, base)
+
+
+def test_blocks_under_a_memory_limit_change_nothing(scene):
+    camera = camera_above((64, 48))
+    whole = visibility(scene, light_above(), camera=camera)
+    blocks = visibility(scene, light_above(), camera=camera, memory_limit=100_000)
+    assert blocks.info["blocks"] > whole.info["blocks"]
+    np.testing.assert_array_equal(blocks.values, whole.values)
+
+
+def test_info_says_what_made_the_result(scene, floor_points):
+    info = visibility(scene, light_above(), points=floor_points, technique=ss.RayTraced(samples=7, seed=3)).info
+    assert info["technique"]["samples"] == 7
+    assert info["technique"]["seed"] == 3
+    assert info["adapter"]["device_type"] == "software"
+    assert info["receivers"] == len(floor_points)
+    assert info["wall_ms"] > 0
+    json.dumps(info)
+
+
+def test_light_points_are_the_samples_of_the_light(scene):
+    light = light_above(texture=np.ones((1, 1, 3)))
+    points = ss.light_points(light, 256, scene=scene)
+    assert points.positions.shape == (256, 3)
+    assert points.parameters.shape == (256, 2)
+    local = np.linalg.inv(light.world_from_light) @ np.c_[points.positions, np.ones(256)].T
+    np.testing.assert_allclose(local[:2].T, points.parameters * 0.5, atol=1e-6)
+    np.testing.assert_allclose(local[2], 0, atol=1e-6)
+    other = ss.light_points(light, 256, scene=scene, seed=1)
+    assert not np.array_equal(points.positions, other.positions)
+    np.testing.assert_array_equal(points.positions, ss.light_points(light, 256, scene=scene).positions)
+
+
+def test_light_points_of_a_sphere_fill_its_disc_as_each_receiver_sees_it(scene, floor_points):
+    light = ss.SphereLight(radius=0.5, world_from_light=POSE)
+    points = ss.light_points(light, 32, floor_points, scene=scene)
+    assert points.positions.shape == (len(floor_points), 32, 3)
+    towards, center = points.positions - floor_points[:, None], POSE[:3, 3] - floor_points[:, None]
+    distance = np.linalg.norm(center, axis=-1)
+    cosine = (towards * center).sum(axis=-1) / np.linalg.norm(towards, axis=-1) / distance
+    angle, half_angle = np.arccos(cosine), np.arcsin(0.5 / distance)
+    assert (angle <= half_angle + 1e-5).all()
+    assert (angle.max(axis=1) > 0.9 * half_angle[:, 0]).all()
+
+
+def test_visibility_png_is_sixteen_bit_linear_grey(scene, tmp_path):
+    result = visibility(scene, light_above(), camera=camera_above((31, 17)))
+    result.save(tmp_path / "map.PNG")
+    read = read_png(tmp_path / "map.PNG")
+    assert read.max() > 255
+    expected = np.round(np.nan_to_num(result.values.astype(np.float64), nan=0.0) * 65535)
+    np.testing.assert_array_equal(read, expected)
+    assert result._repr_png_() == (tmp_path / "map.PNG").read_bytes()
+
+
+def test_npy_holds_the_values(scene, tmp_path):
+    result = visibility(scene, [light_above(), light_above(2.0)], camera=camera_above())
+    result.save(tmp_path / "map.npy")
+    np.testing.assert_array_equal(np.load(tmp_path / "map.npy"), result.values)
+
+
+def test_what_cannot_be_saved_is_refused(scene, floor_points, tmp_path):
+    several = visibility(scene, [light_above()], camera=camera_above())
+    points = visibility(scene, light_above(), points=floor_points)
+    for result in (several, points):
+        assert result._repr_png_() is None
+        with pytest.raises(ss.SettingsError, match="npy"):
+            result.save(tmp_path / "map.png")
+    for name in ("map.exr", "map", "map.png.txt"):
+        with pytest.raises(ss.SettingsError, match="unknown format"):
+            points.save(tmp_path / name)
+    with pytest.raises(ss.SettingsError, match="path"):
+        points.save(3)
+    with pytest.raises(FileNotFoundError):
+        points.save(tmp_path / "nowhere" / "map.npy")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_pictures(scene, tmp_path):
+    light, camera = light_above(radiance=(30, 20, 10)), camera_above((31, 17))
+    picture = render(scene, light, camera=camera, background=(0.25, 0.5, 1))
+    assert picture.linear.shape == picture.srgb.shape == (17, 31, 3)
+    assert picture.linear.dtype == np.float32
+    assert picture.info["technique"]["name"] == "ray_traced"
+    nothing = ~picture.visibility.valid
+    np.testing.assert_array_equal(picture.linear[nothing], [[0.25, 0.5, 1]] * nothing.sum())
+    red, green, _ = np.moveaxis(picture.linear[~nothing], -1, 0)
+    np.testing.assert_allclose(green, red * 2 / 3, rtol=1e-4)
+    clipped = np.clip(picture.linear.astype(np.float64), 0, 1)
+    encoded = np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
+    np.testing.assert_allclose(picture.srgb, encoded * 255, atol=0.51)
+    picture.save(tmp_path / "a.png")
+    np.testing.assert_array_equal(read_png(tmp_path / "a.png"), picture.srgb)
+    picture.save(tmp_path / "a.npy")
+    np.testing.assert_array_equal(np.load(tmp_path / "a.npy"), picture.linear)
+    np.testing.assert_array_equal(read_png(io.BytesIO(picture._repr_png_())), picture.srgb)
+
+
+def test_exposure_shading_and_lights_add_up_in_pictures(scene):
+    light, camera = light_above(radiance=(5, 5, 5)), camera_above()
+    base = render(scene, light, camera=camera)
+    brighter = render(scene, light, camera=camera, exposure=1)
+    np.testing.assert_allclose(brighter.linear, base.linear * 2, rtol=1e-6)
+    twice = render(scene, [light, light], camera=camera)
+    np.testing.assert_allclose(twice.linear, base.linear * 2, rtol=1e-5)
+    assert twice.visibility.values.shape == (2, 12, 16)
+    modulated = render(scene, light, camera=camera, shading="modulated")
+    assert not np.array_equal(modulated.linear, base.linear)
+    lit = base.visibility.values == 1
+    np.testing.assert_allclose(modulated.linear[lit], base.linear[lit], rtol=1e-4)
+
+
+def test_comparisons(scene):
+    techniques = [ss.RayTraced(samples=4), ss.RayTraced(samples=256), ss.HardShadowMap(resolution=512)]
+    reference = ss.RayTraced(samples=1024, pattern="low_discrepancy")
+    camera = camera_above((32, 24))
+    result = compare(scene, light_above(), camera=camera, techniques=techniques, reference=reference, repeats=1)
+    few, many, hard = (row["penumbra"]["rmse"] for row in result.rows)
+    assert many < few < hard
+    assert result.reference["technique"]["samples"] == 1024
+    assert [row["technique"]["name"] for row in result.rows] == ["ray_traced", "ray_traced", "hard_shadow_map"]
+    lines = str(result).splitlines()
+    assert len(lines) == 4
+    assert "hard_shadow_map(resolution=512)" in lines[3]
+    assert json.loads(result.to_json())["rows"] == result.rows
+
+
+def test_defaults_are_those_of_the_library(scene, floor_points):
+    from softshadow import _core  # noqa: TID251 - what the defaults are compared with
+
+    for row in json.loads(_core.technique_defaults()):
+        kind = {"ray_traced": ss.RayTraced, "hard_shadow_map": ss.HardShadowMap}[row["name"]]
+        assert json.loads(kind().to_json()) == row
+    info = visibility(scene, light_above(), points=floor_points).info
+    assert info["technique"] == json.loads(ss.RayTraced().to_json())
+
+
+def test_doctor_lists_adapters():
+    found = ss.doctor()
+    assert found.version == ss.__version__
+    assert found.adapters
+    assert found.chosen in str(found)
+    assert all(adapter["name"] in str(found) for adapter in found.adapters)
+    json.dumps(found.to_dict())
