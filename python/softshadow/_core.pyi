@@ -43,6 +43,7 @@ class _VisibilityArrays(TypedDict):
     valid: NDArray[np.bool_]
     standard_error: NDArray[np.float32] | None
     placed: _PlacedArrays | None
+    visible_samples: NDArray[np.bool_] | None
     info: str
 
 class _PictureArrays(TypedDict):
@@ -144,6 +145,7 @@ def visibility(
     memory_limit: int | None,
     standard_error: bool,
     receivers: bool,
+    sample_masks: bool,
     progress: _Progress | None,
 ) -> _VisibilityArrays: ...
 def render(

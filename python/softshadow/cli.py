@@ -77,9 +77,7 @@ def _parser() -> argparse.ArgumentParser:
 def _add_common(command: argparse.ArgumentParser) -> None:
     command.add_argument("scene", metavar="SCENE", help="a file or the name of a shipped scene")
     command.add_argument("-o", "--output", required=True, metavar="FILE", help="what to write")
-    command.add_argument(
-        "--light", action="append", type=parse_light, help="may be repeated; default: its own"
-    )
+    command.add_argument("--light", action="append", type=parse_light, help="may be repeated; default: its own")
     command.add_argument("--camera", type=parse_camera, help="default: the scene's own, or all of it in view")
     command.add_argument("--size", type=parse_size, metavar="WxH", help="pixels; default: the camera's own")
     command.add_argument("--technique", type=parse_technique, default="ray-traced", help="name and settings")
@@ -136,9 +134,7 @@ def _scene_lights_camera(options: argparse.Namespace) -> Any:
     elif camera is None:
         camera = framed(scene, options.size or _DEFAULT_SIZE)
     elif options.size is not None:
-        camera = type(camera)(
-            world_from_camera=camera.world_from_camera, fov_y_deg=camera.fov_y_deg, size=options.size
-        )
+        camera = type(camera)(world_from_camera=camera.world_from_camera, fov_y_deg=camera.fov_y_deg, size=options.size)
     lights = options.light or [light or lit_from_above(scene)]
     return scene, lights[0] if len(lights) == 1 else lights, camera
 

@@ -23,7 +23,7 @@ class LightPoints:
     Attributes
     ----------
     positions : float64, (samples, 3), for a sphere (receivers, samples, 3)
-        World coordinates; directions towards the light where `at_infinity`.
+        World coordinates; directions towards the light where `at_infinity`; NaN from inside a sphere.
     parameters : float32, (samples, 2)
         Place on the light: [-1, 1]² on a rectangle, the unit disc on disc, sphere and sun, light-local world
         units on a polygon.

@@ -44,6 +44,8 @@ class Visibility:
         Geometric, on the camera's side; for points as given.
     triangles : int64, (H, W) or (points,), or None
         Triangle ids, counted through the scene's meshes; -1 where there is none.
+    visible_samples : bool, the shape of one value's array with a last axis of samples, or None
+        Which light samples of the last pass are visible, in the order of :func:`light_points`.
     info : dict
         What made the result: adapter, technique, settings, times and bytes.
     """
@@ -54,6 +56,7 @@ class Visibility:
     positions: NDArray[np.float64] | None
     normals: NDArray[np.float32] | None
     triangles: NDArray[np.int64] | None
+    visible_samples: NDArray[np.bool_] | None
     info: dict[str, Any]
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -97,6 +100,7 @@ def visibility(
     progress: Progress | None = None,
     standard_error: bool = True,
     receivers: bool = False,
+    sample_masks: bool = False,
 ) -> Visibility:
     """The share of each light that every receiver sees: 1 is fully lit, 0 is full shadow.
 
@@ -125,6 +129,8 @@ def visibility(
         Whether to return it, where the technique has one.
     receivers : bool
         Whether to return positions, normals and triangle ids.
+    sample_masks : bool
+        Whether to return which samples are visible. Only `RayTraced` without probes decides all of them.
 
     Returns
     -------
@@ -143,6 +149,8 @@ def visibility(
     """
     built, several = built_lights(lights)
     where = receivers_of(camera, points, normals)
+    if sample_masks and not (isinstance(technique, RayTraced) and technique.probes == 0):
+        raise SettingsError("sample_masks: only RayTraced without probes decides every sample")
     arrays = _core.visibility(
         context(device),
         scene_of(scene),
@@ -152,6 +160,7 @@ def visibility(
         memory_limit=memory_limit_bytes(memory_limit),
         standard_error=bool(standard_error),
         receivers=bool(receivers),
+        sample_masks=bool(sample_masks),
         progress=callback(progress),
     )
     return shaped(arrays, (len(built),) if several else (), where.shape)
@@ -198,7 +207,8 @@ def shaped(arrays: _core._VisibilityArrays, leading: tuple[int, ...], shape: tup
     """The core's flat arrays in their public shapes: `leading` is (lights,) or nothing."""
     channels = arrays["channels"]
     full = leading + shape + ((channels,) if channels > 1 else ())
-    error, placed = arrays["standard_error"], arrays["placed"]
+    error, placed, seen = arrays["standard_error"], arrays["placed"], arrays["visible_samples"]
+    info = json.loads(arrays["info"])
     return Visibility(
         values=arrays["values"].reshape(full),
         valid=arrays["valid"].reshape(shape),
@@ -206,5 +216,6 @@ def shaped(arrays: _core._VisibilityArrays, leading: tuple[int, ...], shape: tup
         positions=None if placed is None else placed["positions"].reshape(*shape, 3),
         normals=None if placed is None else placed["normals"].reshape(*shape, 3),
         triangles=None if placed is None else placed["triangles"].reshape(shape),
-        info=json.loads(arrays["info"]),
+        visible_samples=None if seen is None else seen.reshape(*leading, *shape, info["technique"]["samples"]),
+        info=info,
     )

@@ -1,7 +1,7 @@
 // Turns the number of candidates into the size of an indirect dispatch, in rows where one row would exceed the limit.
 //#import shared/slice.wgsl
+//#import ray_traced/hierarchy.wgsl
 
-const GROUP: u32 = 64u;
 const LARGEST_ROW: u32 = 65535u;
 
 @group(0) @binding(0) var<uniform> slice: Slice;

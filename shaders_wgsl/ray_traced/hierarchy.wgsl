@@ -21,6 +21,9 @@ struct TraceRange {
 
 const LEAF_BITS: u32 = 3u;
 
+// Candidates of one workgroup.
+const GROUP: u32 = 64u;
+
 // The reciprocal of a component that may be zero. Local coordinates are of the order of 1, so what is replaced is far below
 // the smallest step of any ray.
 fn safe_reciprocal(x: vec3<f32>) -> vec3<f32> {

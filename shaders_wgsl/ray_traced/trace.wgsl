@@ -16,44 +16,56 @@
 @group(0) @binding(10) var<storage, read> candidate_count: u32;
 @group(0) @binding(11) var<storage, read_write> blocked: array<u32>;
 
+// A group's place in the list of candidates. Drivers on the CPU hand each thread a run of groups; candidates that lie side by
+// side in the list lie side by side in the image and cost alike, so runs of the list would leave threads idle.
+fn scattered_group(group: u32) -> u32 {
+    let used = (candidate_count + GROUP - 1u) / GROUP;
+    // A prime that does not divide the number of groups visits each of them once.
+    let stride = select(7919u, 7907u, used % 7919u == 0u);
+    return select(group, (group * stride) % max(used, 1u), group < used && used < 500000u);
+}
+
 fn is_blocked(receiver: Receiver, way: vec3<f32>, unbounded: bool, range: vec2<u32>, pad: vec3<f32>) -> bool {
     let inverse = safe_reciprocal(way);
     // The box is widened by what rounding can cost, so that no box hides a triangle that the test below would meet.
     let to_low = (-receiver.position - pad) * inverse;
     let to_high = (-receiver.position + pad) * inverse;
     let end_of_way = select(1.0, 1e30, unbounded);
+    let rising = inverse >= vec3<f32>(0.0);
     var node = range.x;
     var hit = false;
-    while (node <= range.y) {
-        let box = nodes[node];
-        let rising = inverse >= vec3<f32>(0.0);
-        let near = select(box.high * inverse + to_high, box.low * inverse + to_low, rising);
-        let far = select(box.low * inverse + to_low, box.high * inverse + to_high, rising);
-        let enter = max(max(near.x, near.y), max(near.z, 0.0));
-        let leave = min(min(far.x, far.y), min(far.z, end_of_way));
-        let met = enter <= leave;
-        let count = select(0u, box.leaf & ((1u << LEAF_BITS) - 1u), met);
-        let first = box.leaf >> LEAF_BITS;
-        for (var k = first; k < first + count; k++) {
+    while (node <= range.y && !hit) {
+        var leaf = 0u;
+        while (leaf == 0u && node <= range.y) {
+            let box = nodes[node];
+            let near = select(box.high * inverse + to_high, box.low * inverse + to_low, rising);
+            let far = select(box.low * inverse + to_low, box.high * inverse + to_high, rising);
+            let enter = max(max(near.x, near.y), max(near.z, 0.0));
+            let leave = min(min(far.x, far.y), min(far.z, end_of_way));
+            let met = enter <= leave;
+            leaf = select(0u, box.leaf, met);
+            node = select(box.skip, node + 1u, met && box.leaf == 0u);
+        }
+        let first = leaf >> LEAF_BITS;
+        let count = leaf & ((1u << LEAF_BITS) - 1u);
+        for (var k = first; k < first + count && !hit; k++) {
             let a = corners[3u * k];
             let b = corners[3u * k + 1u].position;
             let c = corners[3u * k + 2u].position;
             let blocks = triangle_blocks(a.position, b, c, receiver.position, way, unbounded);
-            hit = hit || (blocks && a.triangle != receiver.triangle);
+            hit = blocks && a.triangle != receiver.triangle;
         }
-        node = select(box.skip, node + 1u, met && box.leaf == 0u);
-        node = select(node, 0xffffffffu, hit);
     }
     return hit;
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(64)  // GROUP
 fn trace(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let position = (group.y * groups.x + group.x) * 64u + lane;
+    let position = scattered_group(group.y * groups.x + group.x) * GROUP + lane;
     if (position >= candidate_count) {
         return;
     }

@@ -36,7 +36,10 @@ def read_png(source: object) -> np.ndarray:
 @pytest.fixture
 def scene() -> ss.Scene:
     return ss.Scene(
-        [ss.Mesh(vertices=FLOOR, faces=SQUARE, name="floor"), ss.Mesh(vertices=CARD, faces=SQUARE, name="card")]
+        [
+            ss.Mesh(vertices=FLOOR, faces=SQUARE, name="floor"),
+            ss.Mesh(vertices=CARD, faces=SQUARE, name="card"),
+        ]
     )
 
 

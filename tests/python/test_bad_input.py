@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import CARD, SQUARE, camera_above, compare, light_above, render, visibility
 
 import softshadow as ss
+from conftest import CARD, SQUARE, camera_above, compare, light_above, render, visibility
 
 POSE = np.eye(4)
 LIGHT = light_above()
@@ -38,7 +38,11 @@ NONSENSE = [
     (lambda: ss.Scene.from_arrays(CARD * INF, SQUARE), ss.SceneError, "vertices"),
     (lambda: ss.Scene.from_arrays(CARD, [[0, 1, 4]]), ss.SceneError, "triangle 0 refers to vertex 4"),
     (lambda: ss.Scene.from_arrays(CARD, [[0, 1, 2], [0, -1, 2]]), ss.SceneError, "triangle 1 .* vertex -1"),
-    (lambda: ss.Scene.from_arrays(CARD, np.array([[0, 1, 2**63]], np.uint64)), ss.SceneError, "vertex 9223372036854775808"),
+    (
+        lambda: ss.Scene.from_arrays(CARD, np.array([[0, 1, 2**63]], np.uint64)),
+        ss.SceneError,
+        "vertex 9223372036854775808",
+    ),
     (lambda: ss.Scene.from_arrays(CARD, [[0, 1, 2**70]]), ss.SceneError, "faces.*dtype object"),
     (lambda: ss.Scene.from_arrays(CARD, SQUARE.astype(float)), ss.SceneError, "faces.*float64"),
     (lambda: ss.Scene.from_arrays(SQUARE, SQUARE), ss.SceneError, "vertices.*int64"),
@@ -110,7 +114,11 @@ NONSENSE = [
     (lambda: camera(fov_y_deg=None), ss.SceneError, "either"),
     (lambda: camera(K=np.eye(3)), ss.SceneError, "either"),
     (lambda: camera(fov_y_deg=None, K=np.zeros((3, 3))), ss.SceneError, "camera K"),
-    (lambda: camera(fov_y_deg=None, K=np.array([[1.0, 0.5, 0], [0, 1, 0], [0, 0, 1]])), ss.SceneError, "skew"),
+    (
+        lambda: camera(fov_y_deg=None, K=np.array([[1.0, 0.5, 0], [0, 1, 0], [0, 0, 1]])),
+        ss.SceneError,
+        "skew",
+    ),
     (lambda: camera(fov_y_deg=None, K=np.diag([0.0, 1, 1])), ss.SceneError, "focal"),
     (lambda: camera(frame="blender"), ss.SettingsError, "opencv"),
     # techniques
@@ -128,7 +136,11 @@ NONSENSE = [
     (lambda: ss.HardShadowMap(resolution=2**31), ss.SettingsError, "resolution"),
     # calls
     (lambda: visibility(SCENE, LIGHT), ss.SceneError, "either a camera or points"),
-    (lambda: visibility(SCENE, LIGHT, camera=CAMERA, points=CARD), ss.SceneError, "either a camera or points"),
+    (
+        lambda: visibility(SCENE, LIGHT, camera=CAMERA, points=CARD),
+        ss.SceneError,
+        "either a camera or points",
+    ),
     (lambda: visibility(SCENE, LIGHT, camera=CAMERA, normals=CARD), ss.SceneError, "normals"),
     (lambda: visibility(SCENE, LIGHT, camera="front"), ss.SceneError, "camera"),
     (lambda: visibility(SCENE, LIGHT, points=NAN), ss.SceneError, "points.*2 "),

@@ -9,9 +9,9 @@ import sys
 import numpy as np
 import pytest
 import trimesh
-from conftest import CARD, FLOOR, SQUARE, read_png, visibility
 
 import softshadow as ss
+from conftest import CARD, FLOOR, SQUARE, read_png, visibility
 from softshadow.cli import main
 
 SMALL = ["--size", "24x16", "--device", "software"]
@@ -71,7 +71,11 @@ def test_a_file_alone_is_lit_from_above_and_all_in_view(tmp_path, mesh_file):
 
 @pytest.mark.parametrize(
     "light",
-    ["disc:radius=0.3,position=0/3/0", "sphere:radius=0.3,position=0/3/0", "sun:azimuth=40,elevation=60,up=y"],
+    [
+        "disc:radius=0.3,position=0/3/0",
+        "sphere:radius=0.3,position=0/3/0",
+        "sun:azimuth=40,elevation=60,up=y",
+    ],
 )
 def test_every_kind_of_light(tmp_path, mesh_file, light):
     out = tmp_path / "map.npy"
@@ -81,7 +85,12 @@ def test_every_kind_of_light(tmp_path, mesh_file, light):
 
 def test_several_lights_are_added_in_a_picture(tmp_path, mesh_file):
     out = tmp_path / "a.png"
-    lights = ["--light", "sun:azimuth=40,elevation=60", "--light", "disc:radius=0.3,position=0/3/0,radiance=9/9/9"]
+    lights = [
+        "--light",
+        "sun:azimuth=40,elevation=60",
+        "--light",
+        "disc:radius=0.3,position=0/3/0,radiance=9/9/9",
+    ]
     assert main(["render", str(mesh_file), "-o", str(out), *lights, *SMALL]) == 0
 
 

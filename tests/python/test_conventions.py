@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import CARD, FLOOR, SQUARE, camera_above, light_above, visibility
 
 import softshadow as ss
+from conftest import CARD, FLOOR, SQUARE, camera_above, light_above, visibility
 
 FRONT_WALL = np.array([[-9.0, -9, -5], [9, -9, -5], [9, 9, -5], [-9, 9, -5]])
 
@@ -144,5 +144,7 @@ def test_the_sun_stands_where_the_compass_says(scene, up, azimuth, elevation, to
     assert points.at_infinity
     mean = points.positions.mean(axis=0)
     np.testing.assert_allclose(mean / np.linalg.norm(mean), towards, atol=2e-3)
-    angles = np.degrees(np.arccos(np.clip(points.positions @ towards / np.linalg.norm(points.positions, axis=1), -1, 1)))
+    angles = np.degrees(
+        np.arccos(np.clip(points.positions @ towards / np.linalg.norm(points.positions, axis=1), -1, 1))
+    )
     assert angles.max() <= 0.53 / 2 + 1e-4

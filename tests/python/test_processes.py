@@ -12,9 +12,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from conftest import camera_above, light_above, visibility
 
 import softshadow as ss
+from conftest import camera_above, light_above, visibility
 
 BUSY = {"camera": camera_above((64, 64)), "technique": ss.RayTraced(samples=256)}
 
@@ -61,7 +61,7 @@ def test_a_forked_child_computes(scene, new_scene):
     if child == 0:
         code = 1
         try:
-            signal.alarm(60)
+            signal.alarm(20)
             again = ss.Scene(scene.meshes) if new_scene else scene
             values = visibility(again, light_above(), **BUSY).values
             code = 0 if np.array_equal(values, expected, equal_nan=True) else 2
@@ -90,7 +90,11 @@ sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 def test_progress_counts_up_to_the_total(scene):
     seen = []
     visibility(
-        scene, light_above(), camera=camera_above((64, 64)), memory_limit=50_000, progress=lambda *p: seen.append(p)
+        scene,
+        light_above(),
+        camera=camera_above((64, 64)),
+        memory_limit=50_000,
+        progress=lambda *p: seen.append(p),
     )
     assert len(seen) > 2
     assert seen == sorted(seen)

@@ -7,9 +7,9 @@ import json
 
 import numpy as np
 import pytest
-from conftest import CARD, SQUARE, camera_above, compare, light_above, read_png, render, visibility
 
 import softshadow as ss
+from conftest import CARD, SQUARE, camera_above, compare, light_above, read_png, render, visibility
 
 
 def test_shapes(scene, floor_points):
@@ -44,7 +44,12 @@ def test_receivers_and_standard_error_come_when_asked_for(scene, floor_points):
 
 
 def test_several_lights_are_one_call_each(scene, floor_points):
-    lights = [light_above(), light_above(2.5), ss.SunLight(30, 50), ss.DiscLight(radius=0.4, world_from_light=POSE)]
+    lights = [
+        light_above(),
+        light_above(2.5),
+        ss.SunLight(30, 50),
+        ss.DiscLight(radius=0.4, world_from_light=POSE),
+    ]
     together = visibility(scene, lights, points=floor_points).values
     for light, values in zip(lights, together, strict=True):
         np.testing.assert_array_equal(values, visibility(scene, light, points=floor_points).values)
@@ -219,7 +224,11 @@ def test_comparisons(scene):
     few, many, hard = (row["penumbra"]["rmse"] for row in result.rows)
     assert many < few < hard
     assert result.reference["technique"]["samples"] == 1024
-    assert [row["technique"]["name"] for row in result.rows] == ["ray_traced", "ray_traced", "hard_shadow_map"]
+    assert [row["technique"]["name"] for row in result.rows] == [
+        "ray_traced",
+        "ray_traced",
+        "hard_shadow_map",
+    ]
     lines = str(result).splitlines()
     assert len(lines) == 4
     assert "hard_shadow_map(resolution=512)" in lines[3]

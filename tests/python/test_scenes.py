@@ -8,9 +8,9 @@ import pickle
 import numpy as np
 import pytest
 import trimesh
-from conftest import CARD, FLOOR, SQUARE, camera_above, light_above, render, visibility
 
 import softshadow as ss
+from conftest import CARD, FLOOR, SQUARE, camera_above, light_above, render, visibility
 
 
 def values_of(scene: ss.Scene) -> np.ndarray:

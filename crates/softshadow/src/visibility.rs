@@ -90,6 +90,15 @@ pub struct SampleMasks {
     pub bits: Vec<u32>,
 }
 
+impl SampleMasks {
+    /// lights × receivers × samples: whether each of the first `samples` samples is visible.
+    #[must_use]
+    pub fn visible(&self, samples: usize) -> Vec<bool> {
+        let row = |words: &[u32]| (0..samples).map(|i| words[i / 32] >> (i % 32) & 1 == 0).collect::<Vec<bool>>();
+        self.bits.chunks_exact(self.words.max(1)).flat_map(row).collect()
+    }
+}
+
 /// Computes visibility.
 ///
 /// # Errors

@@ -6,13 +6,11 @@ use pyo3::prelude::*;
 use softshadow::Error;
 
 use crate::errors::{exception, internal_exception};
-use crate::forked::with_live_threads;
 
 /// Runs `work` with the interpreter released.
-pub(crate) fn detached<T: Send>(_py: Python<'_>, work: impl FnOnce() -> Result<T, Error> + Send) -> PyResult<T> {
-    match catch_unwind(AssertUnwindSafe(|| with_live_threads(work))) {
-        Ok(Ok(result)) => result.map_err(exception),
-        Ok(Err(error)) => Err(internal_exception(format!("no threads: {error}"))),
+pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T, Error> + Send) -> PyResult<T> {
+    match py.detach(|| catch_unwind(AssertUnwindSafe(work))) {
+        Ok(result) => result.map_err(exception),
         Err(panic) => {
             let text = panic.downcast_ref::<String>().map(String::as_str);
             let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");

@@ -10,7 +10,6 @@ mod compare;
 mod context;
 mod detached;
 mod errors;
-mod forked;
 mod image;
 mod light;
 mod light_points;

@@ -21,6 +21,7 @@ pub(crate) struct VisibilityArrays<'py> {
     valid: Bound<'py, PyArray1<bool>>,
     standard_error: Option<Bound<'py, PyArray1<f32>>>,
     placed: Option<PlacedArrays<'py>>,
+    visible_samples: Option<Bound<'py, PyArray1<bool>>>,
     info: String,
 }
 
@@ -40,8 +41,13 @@ pub(crate) struct PictureArrays<'py> {
 
 impl<'py> VisibilityArrays<'py> {
     fn new(py: Python<'py>, visibility: softshadow::Visibility) -> PyResult<Self> {
+        let samples = match &visibility.info.technique {
+            softshadow::Technique::RayTraced(settings) => settings.samples as usize,
+            _ => 0,
+        };
         Ok(Self {
             info: json(&visibility.info)?,
+            visible_samples: visibility.masks.map(|masks| masks.visible(samples).into_pyarray(py)),
             values: visibility.values.into_pyarray(py),
             channels: visibility.channels,
             valid: visibility.valid.into_pyarray(py),
@@ -56,10 +62,10 @@ impl<'py> VisibilityArrays<'py> {
 }
 
 /// What a caller asks for besides scene, lights and technique; `None` leaves the library's default.
-fn options(memory_limit: Option<u64>, standard_error: bool, receivers: bool) -> Options {
+fn options(memory_limit: Option<u64>, standard_error: bool, receivers: bool, sample_masks: bool) -> Options {
     let default = Options::default();
     let memory_limit_bytes = memory_limit.unwrap_or(default.memory_limit_bytes);
-    Options { memory_limit_bytes, standard_error, receivers, ..default }
+    Options { memory_limit_bytes, standard_error, receivers, sample_masks, ..default }
 }
 
 /// A camera, or else points with or without normals.
@@ -84,7 +90,7 @@ fn lights_of(lights: &[Py<Light>]) -> Vec<softshadow::Light> {
 
 /// The lit fraction of every light at every receiver.
 #[pyfunction]
-#[pyo3(signature = (context, scene, lights, *, camera, points, normals, technique, memory_limit, standard_error, receivers, progress))]
+#[pyo3(signature = (context, scene, lights, *, camera, points, normals, technique, memory_limit, standard_error, receivers, sample_masks, progress))]
 #[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
 pub(crate) fn visibility<'py>(
     py: Python<'py>,
@@ -98,11 +104,12 @@ pub(crate) fn visibility<'py>(
     memory_limit: Option<u64>,
     standard_error: bool,
     receivers: bool,
+    sample_masks: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<VisibilityArrays<'py>> {
     let (context, scene, lights) = (context.get().get()?, &scene.get().0, lights_of(&lights));
     let technique = parse_technique(technique)?;
-    let options = options(memory_limit, standard_error, receivers);
+    let options = options(memory_limit, standard_error, receivers, sample_masks);
     let receivers = receivers_of(camera.as_ref(), points.as_ref(), normals.as_ref())?;
     let result = detached_with_progress(py, progress, |on_progress| {
         softshadow::visibility(context, scene, &lights, &receivers, &technique, &options, on_progress)
@@ -134,7 +141,7 @@ pub(crate) fn render<'py>(
         shading: shading_of(shading)?,
         exposure,
         background: background.unwrap_or(default.background),
-        options: options(memory_limit, default.options.standard_error, default.options.receivers),
+        options: options(memory_limit, default.options.standard_error, default.options.receivers, false),
     };
     let (picture, srgb) = detached_with_progress(py, progress, |on_progress| {
         let picture = softshadow::render(context, scene, &lights, &camera, &technique, &options, on_progress)?;

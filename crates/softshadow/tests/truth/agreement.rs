@@ -122,7 +122,8 @@ impl Truth {
         let place = light.local(&self.local.frame);
         let as_f32 = |v: [f64; 3]| v.map(|x| f64::from(x as f32));
         let (center, emission) = (as_f32(place.center.to_array()), as_f32(place.emission.to_array()));
-        if matches!(light.shape(), LightShape::Rectangle { .. } | LightShape::Disc { .. } | LightShape::Polygon { .. }) {
+        if matches!(light.shape(), LightShape::Rectangle { .. } | LightShape::Disc { .. } | LightShape::Polygon { .. })
+        {
             // The kernel's one dot product that decides about the whole light, and four roundings of it.
             let way = sub(receiver.origin, center);
             let height = dot(way, emission);

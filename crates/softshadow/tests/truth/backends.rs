@@ -1,1 +1,72 @@
+//! The adapter that was chosen, and Vulkan beside GL.
 
+use softshadow::{Context, DeviceChoice, DeviceKind, Options, Receivers, Visibility, adapters, visibility};
+
+use crate::common::{Random, hard_shadow_map, ray_traced, shipped, surface_points};
+
+/// Set where Mesa's drivers are installed, so that a missing adapter fails instead of being skipped.
+const EXPECT: &str = "SOFTSHADOW_EXPECT_ADAPTER";
+
+fn lavapipe_is_expected() -> bool {
+    std::env::var(EXPECT).is_ok_and(|name| name == "lavapipe")
+}
+
+#[test]
+fn the_expected_adapter_is_chosen() {
+    let adapter = crate::common::context().adapter();
+    println!("adapter: {adapter:?}");
+    if lavapipe_is_expected() {
+        assert_eq!((adapter.backend.as_str(), adapter.device_type), ("vulkan", DeviceKind::Software));
+    }
+    let listed = &adapters()[adapter.index];
+    assert_eq!(
+        (&listed.name, &listed.backend),
+        (&adapter.name, &adapter.backend),
+        "its index is its place in the list"
+    );
+    let beyond = Context::new(&DeviceChoice::Index(1000)).err().map(|error| error.to_string());
+    assert!(beyond.is_some_and(|words| words.contains("1000")), "a number that no adapter has is refused");
+}
+
+/// Receivers whose values differ by more than `tolerance`, and valid ones in all.
+fn differing(a: &Visibility, b: &Visibility, tolerance: f32) -> (usize, usize) {
+    let pairs = a.values.iter().zip(&b.values).zip(a.valid.iter().zip(&b.valid));
+    pairs.fold((0, 0), |(different, all), ((a, b), (valid_a, valid_b))| {
+        let differs = valid_a != valid_b || *valid_a && (a - b).abs() > tolerance;
+        (different + usize::from(differs), all + usize::from(*valid_a || *valid_b))
+    })
+}
+
+#[test]
+fn vulkan_and_gl_agree() {
+    let of = |backend: &str| adapters().into_iter().find(|a| a.backend == backend).map(|a| a.index);
+    let (Some(vulkan), Some(gl)) = (of("vulkan"), of("gl")) else {
+        assert!(!lavapipe_is_expected(), "{EXPECT} is set, but Vulkan or GL is missing");
+        println!("skipped 1 test: vulkan_and_gl_agree needs both a Vulkan and a GL adapter");
+        return;
+    };
+    let contexts = [vulkan, gl].map(|index| Context::new(&DeviceChoice::Index(index)).unwrap());
+    assert_eq!(contexts.each_ref().map(|c| c.adapter().backend.clone()), ["vulkan", "gl"]);
+    let (scene, light, camera) = shipped("hall", [160, 120]);
+    let floor = Random(4).points(20_000, [-4.0, 4.0], [0.0, 0.0], [-5.0, 5.0]);
+    for technique in [ray_traced(64), hard_shadow_map(1024)] {
+        for (name, receivers) in
+            [("camera", Receivers::Camera(camera)), ("points", surface_points(floor.clone(), [0.0, 1.0, 0.0]))]
+        {
+            let [a, b] = contexts.each_ref().map(|context| {
+                let light = std::slice::from_ref(&light);
+                let options = Options::default();
+                visibility(context, &scene, light, &receivers, &technique, &options, &mut |_, _| true).unwrap()
+            });
+            let (different, all) = differing(&a, &b, 1e-6);
+            println!("Vulkan and GL, {}, {name}: {different} of {all} receivers differ", technique.name());
+            assert!(different * 10_000 <= all, "{} {name}: {different} of {all}", technique.name());
+            assert!(all > 10_000);
+            // A comparison that cannot tell one receiver from its neighbour proves nothing.
+            let mut spoilt = b.clone();
+            spoilt.values.rotate_left(1);
+            spoilt.valid.rotate_left(1);
+            assert!(differing(&a, &spoilt, 1e-6).0 * 1000 > all);
+        }
+    }
+}

@@ -94,9 +94,9 @@ fn a_sphere_hides_its_share_of_a_rectangle() {
 
 #[test]
 fn a_sphere_hides_its_share_of_a_sphere_light() {
-    let (center, radius) = ([0.0, 0.1, 0.9], 0.3);
+    let (center, radius) = ([0.0, 0.1, 0.7], 0.25);
     let occluder = sphere(center, radius, 6);
-    let light = Sphere { center: [0.0, 0.0, HEIGHT], radius: 0.45 };
+    let light = Sphere { center: [0.0, 0.0, HEIGHT], radius: 0.4 };
     let inner = inner_radius(&occluder, center);
     case("sphere over sphere light", &occluder, LightShape::Sphere { radius: light.radius }).require(|p| {
         [radius, inner].map(|radius| sphere_over_sphere_light(p, &Sphere { center, radius }, &light).unwrap())
@@ -134,7 +134,8 @@ fn an_l_shaped_light_is_the_sum_of_its_rectangles_past_a_box_and_below_the_horiz
 fn a_half_plane_hides_a_segment_of_the_sun() {
     let (angle, height, diameter) = (0.5, 1.0, 4.0_f64.to_radians());
     let sun = LightShape::Sun { angular_diameter: diameter };
-    let near_edge = Case { x: [-0.08, 0.08], y: [-0.08, 0.08], ..case("half-plane over the sun", &half_plane(angle, height), sun) };
+    let near_edge =
+        Case { x: [-0.08, 0.08], y: [-0.08, 0.08], ..case("half-plane over the sun", &half_plane(angle, height), sun) };
     near_edge.require(|p| {
         // On the tangent disc of radius 1 around the sun's direction the edge stands at t.
         let t = -(p[0] * angle.cos() + p[1] * angle.sin()) / (height * (diameter / 2.0).tan());

@@ -93,7 +93,12 @@ impl Case<'_> {
     pub(crate) fn require(&self, truth: impl Fn(Point) -> [f64; 2]) {
         let coverage = self.judge(&truth);
         assert!(coverage.holds(), "{}: {coverage:?}", self.name);
-        let spoilt = Case { name: "  spoilt: truth of receivers 0.02 aside", scene: self.scene.clone(), light: self.light.clone(), ..*self };
+        let spoilt = Case {
+            name: "  spoilt: truth of receivers 0.02 aside",
+            scene: self.scene.clone(),
+            light: self.light.clone(),
+            ..*self
+        };
         let coverage = spoilt.judge(&|p| truth([p[0] + 0.02, p[1] + 0.02, p[2]]));
         assert!(!coverage.holds(), "{}: a shifted truth passes", self.name);
     }

@@ -105,7 +105,11 @@ fn standard_errors_cover_as_often_as_they_claim() {
         }
     }
     let share = |count: usize| count as f64 / penumbra as f64;
-    println!("coverage of ±t(.975, 15) SE: {:.3} of {penumbra}; of half of it {:.3}", share(covered), share(covered_by_half));
+    println!(
+        "coverage of ±t(.975, 15) SE: {:.3} of {penumbra}; of half of it {:.3}",
+        share(covered),
+        share(covered_by_half)
+    );
     assert!((0.90..=0.99).contains(&share(covered)), "{}", share(covered));
     assert!(share(covered_by_half) < 0.90, "an error half as large would be found out");
 }

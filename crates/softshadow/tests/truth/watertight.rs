@@ -23,7 +23,8 @@ fn lights() -> Vec<Light> {
 /// Samples that are visible, of how many.
 fn leaks(seen: &Visibility, samples: usize) -> (usize, usize) {
     let masks = seen.masks.as_ref().unwrap();
-    let blocked: usize = masks.bits.iter().map(|word| (word & (u32::MAX >> (32 - samples.min(32)))).count_ones() as usize).sum();
+    let blocked: usize =
+        masks.bits.iter().map(|word| (word & (u32::MAX >> (32 - samples.min(32)))).count_ones() as usize).sum();
     let asked = seen.lights * seen.receivers * samples;
     (asked - blocked, asked)
 }

@@ -20,6 +20,8 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
     };
     let picture = request.wants.picture.is_some();
 
+    let candidate = &softshadow_shaders::module("ray_traced/hierarchy.wgsl").unwrap().structs["Candidate"];
+
     add("receivers".into(), count * 32);
     if request.opens_block && camera {
         let [width, height] = match request.receivers {
@@ -53,6 +55,11 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
             add("decided samples".into(), count * 4);
             add("standard error".into(), count * 4 * u64::from(request.channels));
             for n in 0..sub_scenes.len() {
+                // A receiver and the ends of its walk for each that may need rays; their number; and a dispatch in x, y, z.
+                add(format!("candidates {n}"), count * u64::from(candidate.bytes));
+                add(format!("candidate count {n}"), 4);
+                add(format!("dispatch size {n}"), 12);
+                add(format!("gather range {n}"), 8);
                 add(format!("trace range {n}"), 8);
                 if settings.probes > 0 {
                     add(format!("probe range {n}"), 8);

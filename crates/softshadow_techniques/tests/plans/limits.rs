@@ -19,7 +19,7 @@ const CORE: Limits = Limits {
 fn every_plan_of_the_grid_runs_on_core_webgpu() {
     let mut host = Host::default();
     assert_eq!(host.limits, CORE);
-    // The example of a host with less than anybody has to offer: the check has to see it.
+    // The same plans on a host with one storage buffer show that the check looks at them.
     let (mut passed, mut refused) = (0, 0);
     let fixture = Fixture::new();
     for technique in techniques() {
@@ -33,7 +33,7 @@ fn every_plan_of_the_grid_runs_on_core_webgpu() {
             refused += usize::from(matches!(check(&plan, &host), Err(PlanError::TooLarge { limit: 1, .. })));
         }
     }
-    assert!(passed >= 2000 && refused * 2 > passed, "{refused} of {passed} need more than one storage buffer");
+    assert!(passed >= 1500 && refused * 2 > passed, "{refused} of {passed} need more than one storage buffer");
 }
 
 #[test]

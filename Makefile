@@ -1,0 +1,68 @@
+# What people type. `make demo` and `make test` set everything up that they need.
+
+SHELL := /bin/bash
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+# Mesa's device-selection layer writes to stderr where there is no desktop session; the library chooses the device itself.
+export NODEVICE_SELECT := 1
+
+.PHONY: help setup driver venv extension demo test test-rust test-python lint evidence clean
+
+help:
+	@echo "make demo      render the demonstration scene; says where the picture and the numbers are"
+	@echo "make test      all tests, Rust and Python"
+	@echo "make lint      formatting, clippy, ruff, mypy, stubs"
+	@echo "make evidence  heavy checks against other renderers, with meshes; writes EVIDENCE.md"
+
+setup: driver extension
+
+# A software Vulkan driver, where no driver answers. Only Debian and Ubuntu are known here; elsewhere the message says what is missing.
+driver:
+	@if ! ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json >/dev/null 2>&1; then \
+	  echo "no Vulkan driver found: installing Mesa's software driver"; \
+	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); \
+	  $$sudo apt-get update -qq && $$sudo apt-get install -y -qq mesa-vulkan-drivers libvulkan1 libegl1 libgl1-mesa-dri; \
+	fi
+
+venv: $(VENV)/.made
+
+$(VENV)/.made: pyproject.toml
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet "maturin>=1.9.4,<2" numpy trimesh pytest ruff mypy pillow
+	touch $@
+
+extension: venv
+	$(BIN)/maturin develop --release --quiet
+
+demo: setup
+	$(BIN)/python -m softshadow.demo --output demo
+
+test: setup test-rust test-python
+
+test-rust:
+	cargo test --release --workspace --quiet
+
+test-python: extension
+	$(BIN)/python -m pytest -q
+
+lint: extension
+	cargo fmt --all --check
+	cargo clippy --release --workspace --all-targets --quiet -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --quiet
+	$(BIN)/ruff check python tests
+	$(BIN)/ruff format --check python tests
+	$(BIN)/mypy --strict python/softshadow
+	$(BIN)/python -m mypy.stubtest softshadow._core
+
+# Other renderers are large; they are wanted only here.
+evidence: setup
+	@if ! ldconfig -p | grep -q libusb-1.0; then \
+	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); $$sudo apt-get install -y -qq libusb-1.0-0 libgomp1 libx11-6; fi
+	$(BIN)/python -m pip install --quiet open3d mitsuba
+	$(BIN)/python tests/evidence/run.py --output EVIDENCE.md
+
+clean:
+	cargo clean
+	rm -rf $(VENV) demo dist

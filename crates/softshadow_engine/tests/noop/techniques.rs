@@ -1,0 +1,163 @@
+//! Every technique over a grid of calls: the device accepts every plan, and outputs have exact sizes.
+
+use std::collections::BTreeMap;
+
+use softshadow_engine::{Engine, RunReport, StageReport, Timing};
+use softshadow_plan::{Content, ContentKey};
+use softshadow_scene::{Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, Scene, look_at};
+use softshadow_techniques::{
+    HardShadowMap, RayTraced, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
+};
+
+use crate::programs::engine;
+
+const SIZE: [u32; 2] = [24, 16];
+
+/// Two sheets of two triangles in one sub-scene, or in as many as `binding` bytes make necessary.
+fn sheets(binding: u64) -> SceneContents {
+    let rows = |z: f64| vec![[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]];
+    let sheet = |z| Mesh::new("sheet", rows(z), vec![[0, 1, 2], [0, 2, 3]], Material::default()).unwrap();
+    let scene = Scene::new(vec![sheet(0.0), sheet(0.5)]).unwrap();
+    SceneContents::new(LocalScene::new(&scene, None, binding).unwrap())
+}
+
+fn lights() -> Vec<Light> {
+    let light = |shape, z| Light::new(shape, look_at([0.0, 0.0, z], [0.0, 0.0, -9.0], Some([0.0, 1.0, 0.0])).unwrap());
+    let rectangle = LightShape::Rectangle { width: 1.0, height: 0.5 };
+    let texture = LightTexture::new(1, 1, vec![[1.0, 0.5, 0.0]]).unwrap();
+    vec![
+        light(rectangle.clone(), 5.0).unwrap(),
+        light(LightShape::Sphere { radius: 0.3 }, 0.25).unwrap(),
+        light(LightShape::Sun { angular_diameter: 0.01 }, 5.0).unwrap(),
+        light(rectangle, 5.0).unwrap().with_texture(texture).unwrap(),
+    ]
+}
+
+fn techniques() -> Vec<Technique> {
+    let traced =
+        |samples, probes, passes| Technique::RayTraced(RayTraced { samples, probes, passes, ..RayTraced::default() });
+    let mut all = vec![traced(64, 0, 1), traced(33, 8, 3), traced(1, 0, 1)];
+    all.extend([16, 300].map(|resolution| Technique::HardShadowMap(HardShadowMap { resolution })));
+    all
+}
+
+/// Runs a program and returns the size of every output by stage.
+fn sizes(engine: &Engine, program: &VisibilityProgram<'_>) -> (RunReport, Vec<BTreeMap<String, usize>>) {
+    program.check().unwrap();
+    let uploads: BTreeMap<ContentKey, Content> = program.scene.contents().map(|c| (c.key, c.clone())).collect();
+    let mut rows = Vec::new();
+    let report = engine
+        .run(program, &uploads, Timing::Device, &mut |stage: Option<StageReport>| {
+            rows.extend(stage.map(|s| s.outputs.into_iter().map(|(label, bytes)| (label, bytes.len())).collect()));
+            true
+        })
+        .unwrap_or_else(|error| panic!("{:?}: {error}", program.technique));
+    assert_eq!(report.stages, program.stages());
+    (report, rows)
+}
+
+#[test]
+fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
+    let engine = engine();
+    let scenes = [sheets(1 << 20), sheets(128)];
+    assert_eq!(scenes.each_ref().map(|s| s.local.sub_scenes.len()), [1, 2]);
+    let camera = Camera::look_at([3.0, 0.5, 4.0], [0.0; 3], None, 45.0, SIZE).unwrap();
+    let points = Points::new((0..77).map(|n| [0.01 * f64::from(n), 0.0, 0.1]).collect(), None).unwrap();
+    let lights = lights();
+    let mut runs = 0;
+    for technique in techniques() {
+        for scene in &scenes {
+            for receivers in [ReceiverSource::Camera(&camera), ReceiverSource::Points(&points)] {
+                for picture in [None, Some(Shading::Integrated), Some(Shading::Modulated)] {
+                    for most in [usize::MAX, 100] {
+                        let wants = Wants { standard_error: true, sample_masks: true, receivers: true, picture };
+                        let blocks = blocks(receivers.count(), receivers.row(), technique.halo_rows() as usize, most);
+                        let (channels, host) = (3, engine.host());
+                        let program = VisibilityProgram {
+                            technique: &technique,
+                            scene,
+                            lights: &lights,
+                            receivers,
+                            blocks,
+                            channels,
+                            wants,
+                            host,
+                        };
+                        let (report, rows) = sizes(&engine, &program);
+                        assert_eq!(report.submissions, program.stages(), "one submission a stage");
+                        check_sizes(&program, &rows);
+                        runs += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(runs, 5 * 2 * 2 * 3 * 2);
+}
+
+/// Outputs of every stage against what is asked for: values with a light's last pass, receivers and pictures once a block.
+fn check_sizes(program: &VisibilityProgram<'_>, rows: &[BTreeMap<String, usize>]) {
+    for (index, row) in rows.iter().enumerate() {
+        let task = program.task(index).unwrap();
+        let count = program.blocks[task.block].count;
+        let last_pass = task.pass + 1 == program.technique.passes();
+        let mut expected = BTreeMap::new();
+        if task.light == 0 && task.pass == 0 {
+            expected.insert("receivers".to_owned(), count * 32);
+        }
+        if last_pass {
+            expected.insert("visibility".to_owned(), count * 4 * 3);
+            if let Technique::RayTraced(settings) = program.technique {
+                expected.insert("standard error".to_owned(), count * 4 * 3);
+                expected.insert("blocked samples".to_owned(), count * 4 * settings.samples.div_ceil(32) as usize);
+            }
+        }
+        if last_pass && task.light + 1 == program.lights.len() && program.wants.picture.is_some() {
+            expected.insert("color".to_owned(), count * 16);
+        }
+        assert_eq!(*row, expected, "stage {index} of {:?}", program.technique);
+    }
+}
+
+#[test]
+fn one_light_in_one_block_is_one_submission() {
+    let engine = engine();
+    let (scene, lights) = (sheets(1 << 20), lights());
+    let camera = Camera::look_at([3.0, 0.5, 4.0], [0.0; 3], None, 45.0, [512, 512]).unwrap();
+    let receivers = ReceiverSource::Camera(&camera);
+    for technique in Technique::defaults() {
+        let program = VisibilityProgram {
+            technique: &technique,
+            scene: &scene,
+            lights: &lights[..1],
+            receivers,
+            blocks: blocks(receivers.count(), receivers.row(), 0, usize::MAX),
+            channels: 1,
+            wants: Wants::default(),
+            host: engine.host(),
+        };
+        assert_eq!(sizes(&engine, &program).0.submissions, 1, "{}", technique.name());
+    }
+}
+
+#[test]
+fn an_empty_scene_is_run_too() {
+    let engine = engine();
+    let scene = SceneContents::new(LocalScene::new(&Scene::new(Vec::new()).unwrap(), None, 1 << 20).unwrap());
+    let (points, lights) = (Points::new(vec![[0.0; 3]; 9], None).unwrap(), lights());
+    for technique in techniques() {
+        let program = VisibilityProgram {
+            technique: &technique,
+            scene: &scene,
+            lights: &lights,
+            receivers: ReceiverSource::Points(&points),
+            blocks: blocks(9, 1, 0, 4),
+            channels: 3,
+            wants: Wants::default(),
+            host: engine.host(),
+        };
+        let (_, rows) = sizes(&engine, &program);
+        let values: usize = rows.iter().filter_map(|row| row.get("visibility")).sum();
+        assert_eq!(values, 9 * lights.len() * 12, "{technique:?}");
+    }
+}
