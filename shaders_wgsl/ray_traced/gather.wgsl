@@ -27,7 +27,9 @@ fn bundle_walk(receiver: Receiver, ways: WayBounds) -> vec2<u32> {
     // Less than the lift of the receiver, so that what lies in its own plane stays below.
     let horizon_slack = 0.25 * pad.x;
     var node = 0u;
-    while (node < trace_range.node_count) {
+    var steps = 0u;
+    while (node < trace_range.node_count && steps < LONGEST_BUNDLE_WALK) {
+        steps++;
         let box = nodes[node];
         let low = box.low - receiver.position - pad;
         let high = box.high - receiver.position + pad;
@@ -48,6 +50,10 @@ fn bundle_walk(receiver: Receiver, ways: WayBounds) -> vec2<u32> {
             found = vec2<u32>(min(found.x, node), node);
         }
         node = select(box.skip, node + 1u, met && box.leaf == 0u);
+    }
+    // A walk that was not finished has met what it has met, and may meet more to the end.
+    if (node < trace_range.node_count) {
+        found = vec2<u32>(min(found.x, node), trace_range.node_count - 1u);
     }
     return found;
 }

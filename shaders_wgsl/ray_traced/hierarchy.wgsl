@@ -14,15 +14,27 @@ struct Candidate {
     last_node: u32,
 }
 
+// Which samples of the candidates a pass traces.
 struct TraceRange {
     first_sample: u32,
+    end_sample: u32,
     node_count: u32,
+    reserved: u32,
 }
 
 const LEAF_BITS: u32 = 3u;
 
-// Candidates of one workgroup.
+// Invocations of one workgroup.
 const GROUP: u32 = 64u;
+
+// Mesa's software driver ends every loop of an invocation, without a word, once all its loops together have taken 65,535
+// steps. So an invocation traces few samples, walks are bounded, and a ray that was cut short is counted.
+const SAMPLES_PER_INVOCATION: u32 = 8u;
+const LONGEST_BUNDLE_WALK: u32 = 8192u;
+
+fn chunks_of(range: TraceRange) -> u32 {
+    return (range.end_sample - range.first_sample + SAMPLES_PER_INVOCATION - 1u) / SAMPLES_PER_INVOCATION;
+}
 
 // The reciprocal of a component that may be zero. Local coordinates are of the order of 1, so what is replaced is far below
 // the smallest step of any ray.

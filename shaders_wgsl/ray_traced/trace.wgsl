@@ -14,29 +14,29 @@
 @group(0) @binding(8) var<storage, read> decided: array<u32>;
 @group(0) @binding(9) var<storage, read> candidates: array<Candidate>;
 @group(0) @binding(10) var<storage, read> candidate_count: u32;
-@group(0) @binding(11) var<storage, read_write> blocked: array<u32>;
+@group(0) @binding(11) var<storage, read_write> blocked: array<atomic<u32>>;
+@group(0) @binding(12) var<storage, read_write> unfinished: atomic<u32>;
 
-// A group's place in the list of candidates. Drivers on the CPU hand each thread a run of groups; candidates that lie side by
-// side in the list lie side by side in the image and cost alike, so runs of the list would leave threads idle.
-fn scattered_group(group: u32) -> u32 {
-    let used = (candidate_count + GROUP - 1u) / GROUP;
+// A group's place among all. Drivers on the CPU hand each thread a run of groups; candidates that lie side by side in the list
+// lie side by side in the image and cost alike, so runs of the list would leave threads idle.
+fn scattered(group: u32, used: u32) -> u32 {
     // A prime that does not divide the number of groups visits each of them once.
     let stride = select(7919u, 7907u, used % 7919u == 0u);
     return select(group, (group * stride) % max(used, 1u), group < used && used < 500000u);
 }
 
-fn is_blocked(receiver: Receiver, way: vec3<f32>, unbounded: bool, range: vec2<u32>, pad: vec3<f32>) -> bool {
+fn is_blocked(receiver: Receiver, way: vec3<f32>, unbounded: bool, walk: vec2<u32>, pad: vec3<f32>) -> bool {
     let inverse = safe_reciprocal(way);
     // The box is widened by what rounding can cost, so that no box hides a triangle that the test below would meet.
     let to_low = (-receiver.position - pad) * inverse;
     let to_high = (-receiver.position + pad) * inverse;
     let end_of_way = select(1.0, 1e30, unbounded);
     let rising = inverse >= vec3<f32>(0.0);
-    var node = range.x;
+    var node = walk.x;
     var hit = false;
-    while (node <= range.y && !hit) {
+    while (node <= walk.y && !hit) {
         var leaf = 0u;
-        while (leaf == 0u && node <= range.y) {
+        while (leaf == 0u && node <= walk.y) {
             let box = nodes[node];
             let near = select(box.high * inverse + to_high, box.low * inverse + to_low, rising);
             let far = select(box.low * inverse + to_low, box.high * inverse + to_high, rising);
@@ -56,6 +56,9 @@ fn is_blocked(receiver: Receiver, way: vec3<f32>, unbounded: bool, range: vec2<u
             hit = blocks && a.triangle != receiver.triangle;
         }
     }
+    if (node <= walk.y && !hit) {
+        atomicAdd(&unfinished, 1u);
+    }
     return hit;
 }
 
@@ -65,30 +68,29 @@ fn trace(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let position = scattered_group(group.y * groups.x + group.x) * GROUP + lane;
-    if (position >= candidate_count) {
+    let chunks = chunks_of(trace_range);
+    let used = (candidate_count * chunks + GROUP - 1u) / GROUP;
+    let position = scattered(group.y * groups.x + group.x, used) * GROUP + lane;
+    if (position >= candidate_count * chunks) {
         return;
     }
-    let candidate = candidates[position];
+    let candidate = candidates[position / chunks];
     let index = candidate.receiver;
-    let end = decided[index];
-    if (end <= trace_range.first_sample) {
-        return;
-    }
+    let first = trace_range.first_sample + position % chunks * SAMPLES_PER_INVOCATION;
+    let end = min(min(first + SAMPLES_PER_INVOCATION, trace_range.end_sample), decided[index]);
     let receiver = receivers[index];
     let view = light_view(light, receiver.position);
     let pad = vec3<f32>(box_pad(receiver.position));
     let walk = vec2<u32>(candidate.first_node, candidate.last_node);
     let unbounded = light.kind == LIGHT_SUN;
-    for (var word = trace_range.first_sample / 32u; 32u * word < end; word++) {
-        var mask = blocked[index * sampling.words + word];
-        let stop = min(32u, end - 32u * word);
-        for (var bit = max(trace_range.first_sample, 32u * word) - 32u * word; bit < stop; bit++) {
-            if ((mask & (1u << bit)) == 0u) {
-                let way = light_way(light_sample(light, view, light_samples[32u * word + bit]), receiver.position);
-                mask |= select(0u, 1u << bit, is_blocked(receiver, way, unbounded, walk, pad));
+    for (var sample = first; sample < end; sample++) {
+        let word = index * sampling.words + sample / 32u;
+        let bit = 1u << (sample % 32u);
+        if ((atomicLoad(&blocked[word]) & bit) == 0u) {
+            let way = light_way(light_sample(light, view, light_samples[sample]), receiver.position);
+            if (is_blocked(receiver, way, unbounded, walk, pad)) {
+                atomicOr(&blocked[word], bit);
             }
         }
-        blocked[index * sampling.words + word] = mask;
     }
 }

@@ -8,7 +8,7 @@ use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::parts::VISIBILITY;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
 use softshadow_techniques::parts::shading::COLOR;
-use softshadow_techniques::ray_traced::{BLOCKED, STANDARD_ERROR};
+use softshadow_techniques::ray_traced::{BLOCKED, STANDARD_ERROR, UNFINISHED};
 use softshadow_techniques::{
     Block, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
 };
@@ -184,11 +184,21 @@ pub(crate) fn run(
         }
         on_progress(done, total)
     })?;
+    if collector.unfinished > 0 {
+        let rays = collector.unfinished;
+        return Err(Error::Gpu(format!(
+            "the driver ended {rays} rays before they were done: the scene is too dense for its limit on loops; use another \
+             device, or split the scene"
+        )));
+    }
     if report.stages as u64 != total {
         return Err(Error::Gpu(format!("only {} of {total} stages ran", report.stages)));
     }
     Ok(collector.finish(report))
 }
+
+/// Rays that a block may need at most.
+const RAYS_PER_BLOCK: u64 = 1 << 27;
 
 /// How many receivers fit the memory limit and the device's bindings.
 fn receivers_per_block(
@@ -200,12 +210,15 @@ fn receivers_per_block(
     row: usize,
 ) -> Result<usize, Error> {
     let technique_bytes = technique.bytes_per_receiver(channels as u64);
+    // Rays of a block are bounded, so that a dispatch over them ends in time and a caller can stop between blocks.
+    let most_for_rays = RAYS_PER_BLOCK / u64::from(technique.samples()).max(1);
     // The receiver, the point it came from, and the picture's colour.
     let each = 2 * RECEIVER_BYTES + technique_bytes + if picture { 16 } else { 0 };
     let largest_buffer = technique_bytes.max(RECEIVER_BYTES);
     let binding = host.limits.storage_binding_bytes.min(host.limits.buffer_bytes);
     let most = (options.memory_limit_bytes / each).min(binding / largest_buffer).min(1 << 30) as usize;
     let rows = 1 + 2 * technique.halo_rows() as usize;
+    let most = most.min((most_for_rays as usize).max(row * rows));
     if most < row * rows {
         let needed = (row * rows) as u64 * each;
         let what = format!("bytes for {rows} row(s) of receivers at these settings");
@@ -224,6 +237,8 @@ struct Collector<'a> {
     colors: Vec<[f32; 4]>,
     frame: LocalFrame,
     caller_ids: &'a [u32],
+    /// Rays that the driver cut short.
+    unfinished: u64,
 }
 
 impl<'a> Collector<'a> {
@@ -286,7 +301,8 @@ impl<'a> Collector<'a> {
             masks,
             info,
         };
-        Self { result, colors: Vec::new(), frame: contents.local.frame, caller_ids: &contents.local.caller_ids }
+        let frame = contents.local.frame;
+        Self { result, colors: Vec::new(), frame, caller_ids: &contents.local.caller_ids, unfinished: 0 }
     }
 
     fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Vec<u8>>) {
@@ -296,6 +312,10 @@ impl<'a> Collector<'a> {
             for (index, record) in (start..).zip(&records[block.skip..block.skip + block.keep]) {
                 self.add_receiver(index, record);
             }
+        }
+        if let Some(bytes) = outputs.get(UNFINISHED) {
+            self.unfinished +=
+                bytemuck::pod_collect_to_vec::<u8, u32>(bytes).iter().map(|n| u64::from(*n)).sum::<u64>();
         }
         let (count, channels) = (self.result.receivers, self.result.channels);
         let copy = |label: &str, width: usize, into: &mut [f32]| {

@@ -9,8 +9,9 @@ use crate::error::SceneError;
 use crate::frame::LocalFrame;
 use crate::light::{Light, LightShape, LocalLight, triangulate};
 
-/// The most samples of one set.
-pub const MAX_SAMPLES: u32 = 1 << 16;
+/// The most samples of one set: kernels that loop over a set stay below the 65,535 steps after which Mesa's software driver ends
+/// loops. More come as progressive passes.
+pub const MAX_SAMPLES: u32 = 1 << 15;
 
 /// How the unit square is sampled before it is mapped to the light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,7 +45,7 @@ pub fn unit_square(pattern: SamplePattern, count: u32, seed: u32) -> Result<Vec<
     }
     let sobol = |index: u32| [0, 1].map(|axis| f64::from(sobol_burley::sample(index, axis, seed)));
     Ok(match pattern {
-        // The crate's sequence is 2^16 long, which is MAX_SAMPLES.
+        // The crate's sequence is 2^16 long, more than MAX_SAMPLES.
         SamplePattern::LowDiscrepancy => (0..count).map(sobol).collect(),
         SamplePattern::Stratified => {
             let cells = Cells::new(count);

@@ -87,6 +87,15 @@ impl Technique {
         }
     }
 
+    /// Light samples that one receiver asks for in one pass.
+    #[must_use]
+    pub fn samples(&self) -> u32 {
+        match self {
+            Self::RayTraced(settings) => settings.samples,
+            Self::HardShadowMap(_) => 1,
+        }
+    }
+
     /// Rows of an image beyond a block that its results depend on.
     #[must_use]
     pub fn halo_rows(&self) -> u32 {

@@ -31,7 +31,7 @@ use crate::request::{ReceiverSource, Request};
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RayTraced {
-    /// Light samples of one pass, 1 to 65,536.
+    /// Light samples of one pass, 1 to 32,768.
     pub samples: u32,
     /// How they are spread.
     #[serde(with = "pattern_name")]
@@ -75,6 +75,9 @@ pub const STANDARD_ERROR: &str = "standard error";
 /// Label of the masks of blocked samples.
 pub const BLOCKED: &str = "blocked samples";
 
+/// Label of the number of rays that a driver cut short.
+pub const UNFINISHED: &str = "unfinished rays";
+
 const BEGIN: Kernel = Kernel { file: "ray_traced/begin.wgsl", entry: "begin" };
 const GATHER: Kernel = Kernel { file: "ray_traced/gather.wgsl", entry: "gather" };
 const COUNT_GROUPS: Kernel = Kernel { file: "ray_traced/count_groups.wgsl", entry: "count_groups" };
@@ -88,7 +91,9 @@ const RESOLVE_TEXTURED: Kernel = Kernel { file: "ray_traced/resolve.wgsl", entry
 #[repr(C)]
 pub struct TraceRange {
     first_sample: u32,
+    end_sample: u32,
     node_count: u32,
+    reserved: u32,
 }
 
 /// Bytes of `Candidate` of `hierarchy.wgsl`.
@@ -163,39 +168,47 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
             None => scene_buffers::append_corners(&mut plan, request.scene),
         };
         let nodes = scene_buffers::append_nodes(&mut plan, request.scene);
-        let gather_range = |plan: &mut Plan, stage: &str, index: usize| {
+        let range = |plan: &mut Plan, stage: &str, index: usize| {
             plan.parameter(format!("{stage} range {index}"), size_of::<TraceRange>() as u64)
         };
         let mut candidates = Vec::with_capacity(corners.len());
         for (index, nodes) in nodes.iter().enumerate() {
             let list = plan.buffer(format!("candidates {index}"), count as u64 * CANDIDATE_BYTES);
             let length = plan.buffer(format!("candidate count {index}"), 4);
-            let range = gather_range(&mut plan, "gather", index);
+            let gather_range = range(&mut plan, "gather", index);
             plan.clear(format!("empty list {index}"), "no candidate yet", length);
             let why = "finds the receivers with anything between them and the light";
             plan.compute(format!("gather {index}"), why, GATHER, items(4))
                 .bind("light", light.light)
-                .bind("trace_range", range)
+                .bind("trace_range", gather_range)
                 .bind("receivers", receivers)
                 .bind("nodes", *nodes)
                 .bind("decided", decided)
                 .bind("candidates", list)
                 .bind("candidate_count", length);
-            let size = plan.buffer(format!("dispatch size {index}"), 12);
-            let why = "sizes the dispatch over the candidates";
-            let once = Over::Items { count: 1, work_per_item: 1 };
-            plan.compute(format!("count groups {index}"), why, COUNT_GROUPS, once)
-                .bind("candidate_count", length)
-                .bind("dispatch_size", size);
-            candidates.push((list, length, size));
+            candidates.push((list, length));
         }
+        let unfinished = plan.buffer(UNFINISHED, 4);
+        plan.clear("no ray unfinished", "no ray has been cut short yet", unfinished);
+        plan.outputs.push(unfinished);
         let trace = |plan: &mut Plan, stage: &str, why: &str| {
             for index in 0..corners.len() {
-                let range = gather_range(plan, stage, index);
-                plan.compute(format!("{stage} {index}"), why, TRACE, Over::Indirect(candidates[index].2))
+                let trace_range = range(plan, stage, index);
+                let size = plan.buffer(format!("{stage} dispatch {index}"), 12);
+                let once = Over::Items { count: 1, work_per_item: 1 };
+                plan.compute(
+                    format!("size {stage} {index}"),
+                    "sizes the dispatch over the candidates",
+                    COUNT_GROUPS,
+                    once,
+                )
+                .bind("trace_range", trace_range)
+                .bind("candidate_count", candidates[index].1)
+                .bind("dispatch_size", size);
+                plan.compute(format!("{stage} {index}"), why, TRACE, Over::Indirect(size))
                     .bind("light", light.light)
                     .bind("sampling", light.sampling)
-                    .bind("trace_range", range)
+                    .bind("trace_range", trace_range)
                     .bind("receivers", receivers)
                     .bind("light_samples", light.samples)
                     .bind("nodes", nodes[index])
@@ -203,7 +216,8 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
                     .bind("decided", decided)
                     .bind("candidates", candidates[index].0)
                     .bind("candidate_count", candidates[index].1)
-                    .bind("blocked", blocked);
+                    .bind("blocked", blocked)
+                    .bind("unfinished", unfinished);
             }
         };
         if settings.probes == 0 {
@@ -284,8 +298,13 @@ pub(crate) fn values(
     values.insert("sampling".into(), bytemuck::bytes_of(&settings.sampling(pass)).to_vec());
     for (index, sub_scene) in request.scene.local.sub_scenes.iter().enumerate() {
         let node_count = sub_scene.nodes.len() as u32;
-        for (stage, first_sample) in [("gather", 0), ("probe", 0), ("trace", settings.probes)] {
-            let range = TraceRange { first_sample, node_count };
+        let stages = [
+            ("gather", 0, settings.samples),
+            ("probe", 0, settings.probes),
+            ("trace", settings.probes, settings.samples),
+        ];
+        for (stage, first_sample, end_sample) in stages {
+            let range = TraceRange { first_sample, end_sample, node_count, reserved: 0 };
             values.insert(format!("{stage} range {index}"), bytemuck::bytes_of(&range).to_vec());
         }
     }

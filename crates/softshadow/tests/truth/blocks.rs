@@ -13,13 +13,8 @@ fn limited(
     technique: &Technique,
     memory_limit_bytes: u64,
 ) -> Result<Visibility, Error> {
-    let options = Options {
-        memory_limit_bytes,
-        standard_error: true,
-        receivers: true,
-        sample_masks: true,
-        ..Options::default()
-    };
+    let options =
+        Options { memory_limit_bytes, standard_error: true, receivers: true, sample_masks: true, ..Options::default() };
     let lights = [light.clone(), light.clone().with_radiance([2.0; 3]).unwrap()];
     visibility(context(), scene, &lights, receivers, technique, &options, &mut |_, _| true)
 }
@@ -27,9 +22,7 @@ fn limited(
 fn require_same(whole: &Visibility, parts: &Visibility) {
     assert!(bits(whole) == bits(parts));
     assert_eq!((&whole.valid, &whole.standard_error.is_some()), (&parts.valid, &parts.standard_error.is_some()));
-    let error_bits = |v: &Visibility| -> Vec<u32> {
-        v.standard_error.iter().flatten().map(|e| e.to_bits()).collect()
-    };
+    let error_bits = |v: &Visibility| -> Vec<u32> { v.standard_error.iter().flatten().map(|e| e.to_bits()).collect() };
     assert!(error_bits(whole) == error_bits(parts));
     let ids = |v: &Visibility| v.placed.as_ref().unwrap().triangles.clone();
     assert_eq!(ids(whole), ids(parts));

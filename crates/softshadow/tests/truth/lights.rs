@@ -72,7 +72,9 @@ fn a_light_without_size_casts_the_hard_shadow_that_small_ones_approach() {
         assert!(hard.iter().all(|v| *v == 0.0 || *v == 1.0), "{name}: a shadow without penumbra");
         let off = |values: &[f32]| values.iter().zip(&hard).filter(|(a, b)| a != b).count();
         let counts: Vec<usize> = [0.3, 1e-1, 1e-3, 1e-6, 1e-12].map(|size| off(&of(size))).to_vec();
-        println!("{name}: receivers that differ from the hard shadow at sizes 0.3, 1e-1, 1e-3, 1e-6, 1e-12: {counts:?}");
+        println!(
+            "{name}: receivers that differ from the hard shadow at sizes 0.3, 1e-1, 1e-3, 1e-6, 1e-12: {counts:?}"
+        );
         assert!(counts.is_sorted_by(|a, b| a >= b) && counts[0] > 200, "{name}: {counts:?}");
         assert_eq!(counts[3..], [0, 0], "{name}");
         if name != "sun" {
@@ -118,7 +120,9 @@ fn a_textured_light_counts_each_sample_by_its_radiance() {
         apart += usize::from((seen.values[3 * i] - seen.values[3 * i + 1]).abs() > 0.2);
         assert_eq!(seen.values[3 * i + 2], plain.values[i], "a channel without light is measured by area");
     }
-    println!("textured light: off the sum by {worst_sum:.1e}, off its own half by {worst_half:.3}; {apart} of 500 halves apart");
+    println!(
+        "textured light: off the sum by {worst_sum:.1e}, off its own half by {worst_half:.3}; {apart} of 500 halves apart"
+    );
     assert!(worst_sum < 1e-5, "{worst_sum}");
     // 128 samples a half: strata along an edge, and the texture's ramp of one texel in 64.
     assert!(worst_half < 0.05, "{worst_half}");
@@ -139,7 +143,7 @@ fn several_lights_in_one_call_are_as_many_calls() {
         assert!(bits(&together) == joined, "{}", technique.name());
         let errors = |v: &softshadow::Visibility| v.standard_error.clone().unwrap_or_default();
         assert_eq!(errors(&together), apart.iter().flat_map(errors).collect::<Vec<_>>());
-        assert_ne!(bits(&apart[0]).0, bits(&apart[1]).0, "lights of different shapes differ");
+        assert!(bits(&apart[0]).0 != bits(&apart[4]).0, "the sun is no rectangle");
     }
 }
 
@@ -157,7 +161,10 @@ fn probes_change_little_and_only_where_they_agree() {
         let report = measure::compare(&seen.values, &image).unwrap();
         let (overall, other) = (report.overall.unwrap(), full.values.iter().zip(&seen.values));
         let changed = other.clone().filter(|(a, b)| !a.is_nan() && a != b).count();
-        println!("{probes} probes of 256: {changed} of {} pixels differ, RMSE {:.1e}, max {:.3}", overall.count, overall.rmse, overall.max);
+        println!(
+            "{probes} probes of 256: {changed} of {} pixels differ, RMSE {:.1e}, max {:.3}",
+            overall.count, overall.rmse, overall.max
+        );
         // A pixel whose probes disagree is traced in full; the others take the verdict of their probes.
         assert!(other.clone().all(|(a, b)| a.is_nan() || a == b || *b == 0.0 || *b == 1.0), "{probes} probes");
         assert_eq!(seen.valid, full.valid);

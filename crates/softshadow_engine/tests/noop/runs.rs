@@ -1,7 +1,7 @@
 //! What a run reports, and what it hands out.
 
 use softshadow_engine::{DeviceKind, Engine, Timing};
-use softshadow_plan::{Plan, Program, Step, Values};
+use softshadow_plan::{Host, Plan, Program, Step, Values};
 
 use crate::programs::{Stages, engine, place, run};
 
@@ -10,9 +10,9 @@ fn the_engine_says_what_it_runs_on() {
     let engine = engine();
     assert_eq!((engine.adapter().device_type, engine.adapter().backend.as_str()), (DeviceKind::Noop, "noop"));
     assert!(!engine.is_lost());
-    let limits = engine.host().limits;
-    assert_eq!(limits.storage_binding_bytes, engine.adapter().storage_binding_bytes);
-    assert!(limits.storage_buffers >= 8 && limits.texture_size >= 8192, "at least core WebGPU: {limits:?}");
+    // The smallest device that WebGPU allows: what it accepts runs everywhere.
+    assert_eq!(engine.host().limits, Host::default().limits);
+    assert_eq!(engine.adapter().storage_binding_bytes, 128 << 20);
 }
 
 #[test]

@@ -32,8 +32,8 @@ fn parts_of_a_pass_are_timed_as_one() {
 #[test]
 fn more_groups_than_a_dispatch_takes_are_several_dispatches_of_one_submission() {
     let engine = engine();
-    // A group has 64 invocations; two million points need no more bytes than any binding has.
-    let count = 3_000_000;
+    // The only pass with room for more than 65,535 groups of 64 has 32 bytes an item: a binding of 128 MiB is then full.
+    let count = 1 << 22;
     assert!(u64::from(count) < MOST_WORK && u64::from(count) * 32 <= engine.host().limits.storage_binding_bytes);
     let (report, _) = run(&engine, &Stages(vec![place(count, 1)]), Timing::Device).unwrap();
     assert_eq!(report.submissions, 1);
