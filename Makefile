@@ -4,8 +4,8 @@ SHELL := /bin/bash
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# Mesa's device-selection layer writes to stderr where there is no desktop session; the library chooses the device itself.
-export NODEVICE_SELECT := 1
+# Mesa's device-selection layer complains on stderr where there is no desktop session; the library chooses the device itself.
+export VK_LOADER_LAYERS_DISABLE := VK_LAYER_MESA_device_select
 
 .PHONY: help setup driver venv extension demo test test-rust test-python lint evidence clean
 

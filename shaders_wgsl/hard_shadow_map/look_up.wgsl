@@ -17,7 +17,7 @@ struct ShadowViews {
 @group(0) @binding(0) var<uniform> slice: Slice;
 @group(0) @binding(1) var<uniform> light: Light;
 @group(0) @binding(2) var<uniform> shadow_views: ShadowViews;
-@group(0) @binding(3) var depth_map: texture_depth_2d_array;
+@group(0) @binding(3) var depth_map: texture_2d_array<f32>;
 @group(0) @binding(4) var<storage, read> receivers: array<Receiver>;
 @group(0) @binding(5) var<storage, read_write> visibility: array<f32>;
 
@@ -32,7 +32,7 @@ fn lit_in_view(view: ShadowView, layer: u32, receiver: Receiver) -> f32 {
     let ndc = vec2<f32>(dot(view.clip_x, p), dot(view.clip_y, p)) / scale;
     let texel_position = (ndc * vec2<f32>(0.5, -0.5) + 0.5) * view.resolution;
     let texel = clamp(floor(texel_position), vec2<f32>(0.0), vec2<f32>(view.resolution - 1.0));
-    let stored = textureLoad(depth_map, vec2<u32>(texel), layer, 0);
+    let stored = textureLoad(depth_map, vec2<u32>(texel), layer, 0).x;
     if (stored <= 0.0) {
         return 1.0;
     }

@@ -14,6 +14,15 @@ struct Candidate {
     last_node: u32,
 }
 
+// Candidates in no particular order: each is read by one invocation a sample, so the order changes no result.
+struct CandidateList {
+    count: atomic<u32>,
+    unfinished: atomic<u32>,   // rays that a driver cut short
+    reserved0: u32,
+    reserved1: u32,
+    items: array<Candidate>,
+}
+
 // Which samples of the candidates a pass traces.
 struct TraceRange {
     first_sample: u32,
@@ -48,4 +57,12 @@ fn safe_reciprocal(x: vec3<f32>) -> vec3<f32> {
 fn box_pad(receiver: vec3<f32>) -> f32 {
     let p = abs(receiver);
     return 16.0 * 5.9604645e-8 * (max(p.x, max(p.y, p.z)) + 1.0);
+}
+
+// A group's place among all. Drivers on the CPU hand each thread a run of groups; candidates that lie side by side in the list
+// lie side by side in the image and cost alike, so runs of the list would leave threads idle.
+fn scattered(group: u32, used: u32) -> u32 {
+    // A prime that does not divide the number of groups visits each of them once.
+    let stride = select(7919u, 7907u, used % 7919u == 0u);
+    return select(group, (group * stride) % max(used, 1u), group < used && used < 500000u);
 }

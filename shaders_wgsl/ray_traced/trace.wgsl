@@ -12,18 +12,8 @@
 @group(0) @binding(6) var<storage, read> nodes: array<BvhNode>;
 @group(0) @binding(7) var<storage, read> corners: array<Corner>;
 @group(0) @binding(8) var<storage, read> decided: array<u32>;
-@group(0) @binding(9) var<storage, read> candidates: array<Candidate>;
-@group(0) @binding(10) var<storage, read> candidate_count: u32;
-@group(0) @binding(11) var<storage, read_write> blocked: array<atomic<u32>>;
-@group(0) @binding(12) var<storage, read_write> unfinished: atomic<u32>;
-
-// A group's place among all. Drivers on the CPU hand each thread a run of groups; candidates that lie side by side in the list
-// lie side by side in the image and cost alike, so runs of the list would leave threads idle.
-fn scattered(group: u32, used: u32) -> u32 {
-    // A prime that does not divide the number of groups visits each of them once.
-    let stride = select(7919u, 7907u, used % 7919u == 0u);
-    return select(group, (group * stride) % max(used, 1u), group < used && used < 500000u);
-}
+@group(0) @binding(9) var<storage, read_write> candidates: CandidateList;
+@group(0) @binding(10) var<storage, read_write> blocked: array<atomic<u32>>;
 
 fn is_blocked(receiver: Receiver, way: vec3<f32>, unbounded: bool, walk: vec2<u32>, pad: vec3<f32>) -> bool {
     let inverse = safe_reciprocal(way);
@@ -57,7 +47,7 @@ fn is_blocked(receiver: Receiver, way: vec3<f32>, unbounded: bool, walk: vec2<u3
         }
     }
     if (node <= walk.y && !hit) {
-        atomicAdd(&unfinished, 1u);
+        atomicAdd(&candidates.unfinished, 1u);
     }
     return hit;
 }
@@ -69,12 +59,13 @@ fn trace(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let chunks = chunks_of(trace_range);
+    let candidate_count = atomicLoad(&candidates.count);
     let used = (candidate_count * chunks + GROUP - 1u) / GROUP;
     let position = scattered(group.y * groups.x + group.x, used) * GROUP + lane;
     if (position >= candidate_count * chunks) {
         return;
     }
-    let candidate = candidates[position / chunks];
+    let candidate = candidates.items[position / chunks];
     let index = candidate.receiver;
     let first = trace_range.first_sample + position % chunks * SAMPLES_PER_INVOCATION;
     let end = min(min(first + SAMPLES_PER_INVOCATION, trace_range.end_sample), decided[index]);

@@ -26,7 +26,14 @@ fn draw(@location(0) position: vec3<f32>, @location(1) triangle: u32) -> Drawn {
     return Drawn(clip, triangle);
 }
 
+struct Written {
+    @location(0) id: u32,
+    @builtin(frag_depth) depth: f32,
+}
+
+// Depth is written from the distance (the fragment's w is its reciprocal): GL would squeeze a reversed depth through -1 ... 1 and
+// lose nearly all of it.
 @fragment
-fn write_id(drawn: Drawn) -> @location(0) u32 {
-    return drawn.triangle + 1u;
+fn write_id(drawn: Drawn) -> Written {
+    return Written(drawn.triangle + 1u, camera_clip.near * drawn.clip.w);
 }

@@ -66,7 +66,9 @@ def _count(scene: mi.Scene, p: mi.Point3f, n: mi.Normal3f, s: mi.Point3f, sample
     while i < samples:
         target = dr.gather(mi.Point3f, s, i)
         way = target - p
-        lit = (dr.dot(n, way) > 0) & ~scene.ray_test(mi.Ray3f(p, way, 1.0, 0.0, mi.Color0f(0)))
+        ray = mi.Ray3f(p, way)
+        ray.maxt = mi.Float(1)
+        lit = (dr.dot(n, way) > 0) & ~scene.ray_test(ray)
         count += dr.select(lit, 1.0, 0.0)
         i += 1
     return count

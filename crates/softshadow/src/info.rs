@@ -17,6 +17,9 @@ pub struct Info {
     pub receivers: usize,
     /// Receivers that see anything at all.
     pub valid_receivers: usize,
+    /// Receivers for which rays were traced, added up over lights, passes and sub-scenes; the others have nothing between them
+    /// and the light.
+    pub traced_receivers: u64,
     /// Wall time from plan to values in milliseconds.
     pub wall_ms: f64,
     /// Time by pass, where the device has a clock.

@@ -8,7 +8,7 @@ use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::parts::VISIBILITY;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
 use softshadow_techniques::parts::shading::COLOR;
-use softshadow_techniques::ray_traced::{BLOCKED, STANDARD_ERROR, UNFINISHED};
+use softshadow_techniques::ray_traced::{BLOCKED, STANDARD_ERROR, TRACE_COUNTS};
 use softshadow_techniques::{
     Block, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
 };
@@ -156,7 +156,15 @@ pub(crate) fn run(
         sample_masks: options.sample_masks,
         picture,
     };
-    let most = receivers_per_block(technique, options, channels, picture.is_some(), &host, source.row())?;
+    let most = receivers_per_block(
+        technique,
+        options,
+        channels,
+        picture.is_some(),
+        &host,
+        source.row(),
+        contents.local.sub_scenes.len(),
+    )?;
     let program = VisibilityProgram {
         technique,
         scene: &contents,
@@ -201,6 +209,7 @@ pub(crate) fn run(
 const RAYS_PER_BLOCK: u64 = 1 << 27;
 
 /// How many receivers fit the memory limit and the device's bindings.
+#[expect(clippy::too_many_arguments, reason = "everything that takes memory")]
 fn receivers_per_block(
     technique: &Technique,
     options: &Options,
@@ -208,8 +217,9 @@ fn receivers_per_block(
     picture: bool,
     host: &softshadow_plan::Host,
     row: usize,
+    sub_scenes: usize,
 ) -> Result<usize, Error> {
-    let technique_bytes = technique.bytes_per_receiver(channels as u64);
+    let technique_bytes = technique.bytes_per_receiver(channels as u64, sub_scenes as u64);
     // Rays of a block are bounded, so that a dispatch over them ends in time and a caller can stop between blocks.
     let most_for_rays = RAYS_PER_BLOCK / u64::from(technique.samples()).max(1);
     // The receiver, the point it came from, and the picture's colour.
@@ -262,6 +272,7 @@ impl<'a> Collector<'a> {
             lights: lights.len(),
             receivers: count,
             valid_receivers: 0,
+            traced_receivers: 0,
             wall_ms: 0.0,
             pass_ms: Vec::new(),
             bytes: Vec::new(),
@@ -313,9 +324,10 @@ impl<'a> Collector<'a> {
                 self.add_receiver(index, record);
             }
         }
-        if let Some(bytes) = outputs.get(UNFINISHED) {
-            self.unfinished +=
-                bytemuck::pod_collect_to_vec::<u8, u32>(bytes).iter().map(|n| u64::from(*n)).sum::<u64>();
+        for (_, bytes) in outputs.iter().filter(|(label, _)| label.starts_with(TRACE_COUNTS)) {
+            let counts: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+            self.result.info.traced_receivers += counts.first().map_or(0, |n| u64::from(*n));
+            self.unfinished += counts.get(1).map_or(0, |n| u64::from(*n));
         }
         let (count, channels) = (self.result.receivers, self.result.channels);
         let copy = |label: &str, width: usize, into: &mut [f32]| {

@@ -80,7 +80,9 @@ fn enumerate(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = backends;
     if backends == wgpu::Backends::NOOP {
-        descriptor.backend_options.noop = wgpu::NoopBackendOptions::enabled();
+        // Core WebGPU's limits: what runs here runs on every host. Without them wgpu's own bookkeeping runs out of room.
+        let limits = Some(wgpu::Limits::default());
+        descriptor.backend_options.noop = wgpu::NoopBackendOptions { limits, ..wgpu::NoopBackendOptions::enabled() };
     }
     let instance = wgpu::Instance::new(descriptor);
     let mut found = pollster::block_on(instance.enumerate_adapters(backends));

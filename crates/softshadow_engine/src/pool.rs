@@ -28,7 +28,8 @@ impl Slot {
 #[derive(PartialEq, Eq, Hash)]
 enum Key {
     Content(ContentKey),
-    /// A label and a shape: within one plan labels are unique, and runs do not overlap.
+    /// A label and a shape: within one plan labels are unique, and runs do not overlap. Parameters are apart, because they
+    /// can be bound as uniforms.
     Named(String, [u64; 5]),
 }
 
@@ -70,7 +71,7 @@ impl Pool {
             Origin::External => {
                 return Err(EngineError::contents(stage, &resource.label, "no external resource was given"));
             }
-            _ => Key::Named(resource.label.clone(), shape_key(&resource.shape)),
+            _ => Key::Named(resource.label.clone(), shape_key(resource)),
         };
         if let Some((slot, used)) = self.slots.get_mut(&key) {
             *used = self.run;
@@ -89,9 +90,9 @@ impl Pool {
     }
 }
 
-fn shape_key(shape: &Shape) -> [u64; 5] {
-    match *shape {
-        Shape::Buffer { bytes } => [0, bytes, 0, 0, 0],
+fn shape_key(resource: &Resource) -> [u64; 5] {
+    match resource.shape {
+        Shape::Buffer { bytes } => [0, bytes, 0, 0, u64::from(resource.origin == Origin::Parameter)],
         Shape::Texture { format, size, layers } => {
             [1 + format as u64, u64::from(size[0]), u64::from(size[1]), u64::from(layers), 0]
         }

@@ -146,9 +146,9 @@ impl Engine {
                 // Whatever a failed stage left behind is not trusted again.
                 state.pool.clear();
             }
-            let mut outputs = result?;
+            let outputs = result?;
             decision = stage.plan.decision.map_or_else(Vec::new, |id| {
-                let bytes = outputs.remove(&stage.plan.resources[id.index()].label).unwrap_or_default();
+                let bytes = outputs.get(&stage.plan.resources[id.index()].label).map_or(&[][..], Vec::as_slice);
                 bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect()
             });
             report.wall_ms = started.elapsed().as_secs_f64() * 1e3;

@@ -90,6 +90,7 @@ pub fn check(plan: &Plan, host: &Host) -> Result<(), PlanError> {
     }
     for output in plan.outputs.iter().chain(&plan.decision) {
         require_written("output", plan, *output, &written)?;
+        require_buffer("output", plan, *output)?;
     }
     Ok(())
 }
@@ -101,8 +102,16 @@ fn check_size(resource: &Resource, host: &Host) -> Result<(), PlanError> {
         }
         Err(PlanError::TooLarge { what: resource.label.clone(), needed, limit })
     };
+    let meaningless = |problem: &str| {
+        let (pass, binding) = ("resources".to_owned(), resource.label.clone());
+        Err(PlanError::Binding { pass, binding, problem: problem.to_owned() })
+    };
     match resource.shape {
         Shape::Buffer { bytes } => too_large(bytes, host.limits.buffer_bytes),
+        Shape::Texture { .. } if matches!(resource.origin, Origin::Uploaded(_) | Origin::Parameter) => {
+            meaningless("only buffers are uploaded")
+        }
+        Shape::Texture { size: [0, _] | [_, 0], .. } | Shape::Texture { layers: 0, .. } => meaningless("has no texel"),
         Shape::Texture { size, layers, .. } => {
             too_large(u64::from(size[0].max(size[1])), u64::from(host.limits.texture_size))?;
             too_large(u64::from(layers), u64::from(host.limits.texture_layers))
@@ -114,10 +123,17 @@ fn check_pass(plan: &Plan, pass: &Pass, host: &Host, written: &mut BTreeSet<Reso
     let read = |id: ResourceId, written: &BTreeSet<ResourceId>| require_written(&pass.label, plan, id, written);
     match &pass.work {
         Work::Clear { target } => {
+            require_writable(&pass.label, plan, *target)?;
             written.insert(*target);
         }
         Work::Copy { source, target, bytes } => {
             read(*source, written)?;
+            require_buffer(&pass.label, plan, *source)?;
+            require_writable(&pass.label, plan, *target)?;
+            if source == target || !bytes.is_multiple_of(4) {
+                let problem = "copies go from one buffer to another, in multiples of four bytes".to_owned();
+                return Err(PlanError::Binding { pass: pass.label.clone(), binding: "copy".into(), problem });
+            }
             for id in [source, target] {
                 let limit = plan.resources[id.index()].bytes();
                 if *bytes > limit {
@@ -179,13 +195,20 @@ fn check_raster(
         }
     }
     check_bindings(plan, pass, host, bindings.iter(), written)?;
-    let colors = raster.colors.iter().map(|c| (c.texture, c.layer, c.clear.is_none()));
-    for (texture, layer, keeps) in colors.chain(raster.depth.iter().map(|d| (d.texture, d.layer, d.clear.is_none()))) {
+    let colors = raster.colors.iter().map(|c| (c.texture, c.layer, c.clear.is_none(), false));
+    let depth = raster.depth.iter().map(|d| (d.texture, d.layer, d.clear.is_none(), true));
+    for (texture, layer, keeps, is_depth) in colors.chain(depth) {
         let resource = &plan.resources[texture.index()];
-        let Shape::Texture { layers, .. } = resource.shape else {
-            let problem = "is drawn to but is a buffer".to_owned();
-            return Err(PlanError::Binding { pass: pass.label.clone(), binding: resource.label.clone(), problem });
+        let wrong = |problem: &str| {
+            let (pass, binding) = (pass.label.clone(), resource.label.clone());
+            Err(PlanError::Binding { pass, binding, problem: problem.to_owned() })
         };
+        let Shape::Texture { layers, format, .. } = resource.shape else {
+            return wrong("is drawn to but is a buffer");
+        };
+        if is_depth != (format == TextureFormat::Depth32Float) {
+            return wrong("depth goes to a depth texture, colour to another");
+        }
         if layer >= layers {
             let (needed, limit) = (u64::from(layer) + 1, u64::from(layers));
             return Err(PlanError::TooLarge { what: resource.label.clone(), needed, limit });
@@ -245,6 +268,9 @@ fn mismatch(binding: &Binding, resource: &Resource, host: &Host) -> Option<Strin
         (BindingKind::Uniform { bytes }, Shape::Buffer { bytes: given }) if u64::from(bytes) != given => {
             Some(format!("the uniform has {bytes} bytes, '{label}' has {given}"))
         }
+        (BindingKind::Uniform { .. }, Shape::Buffer { .. }) if resource.origin != Origin::Parameter => {
+            Some(format!("a uniform is a parameter, '{label}' is none"))
+        }
         (BindingKind::Storage { .. }, Shape::Buffer { bytes: 0 }) => Some(format!("'{label}' is empty")),
         (BindingKind::Storage { .. }, Shape::Buffer { bytes }) if bytes > host.limits.storage_binding_bytes => {
             let limit = host.limits.storage_binding_bytes;
@@ -257,7 +283,8 @@ fn mismatch(binding: &Binding, resource: &Resource, host: &Host) -> Option<Strin
         }
         (BindingKind::Uniform { .. } | BindingKind::Storage { .. }, Shape::Buffer { .. }) => None,
         (BindingKind::Texture(TextureShape { depth, unsigned, array }), Shape::Texture { format, layers, .. }) => {
-            let fits = depth == (format == TextureFormat::Depth32Float)
+            // A depth texture may also be read as plain float32.
+            let fits = (!depth || format == TextureFormat::Depth32Float)
                 && unsigned == (format == TextureFormat::R32Uint)
                 && (array || layers == 1);
             (!fits).then(|| format!("the shader's texture type does not fit '{label}'"))
@@ -274,6 +301,25 @@ fn entry_point(pass: &Pass, file: &str, entry: &str, stage: Stage) -> Result<&'s
         pass: pass.label.clone(),
         error: ShaderError::UnknownFile { file: format!("{file}:{entry}") },
     })
+}
+
+fn require_buffer(pass: &str, plan: &Plan, id: ResourceId) -> Result<(), PlanError> {
+    let resource = &plan.resources[id.index()];
+    if matches!(resource.shape, Shape::Buffer { .. }) && resource.origin != Origin::Parameter {
+        return Ok(());
+    }
+    let problem = "only buffers that the device keeps can be copied or read back".to_owned();
+    Err(PlanError::Binding { pass: pass.to_owned(), binding: resource.label.clone(), problem })
+}
+
+fn require_writable(pass: &str, plan: &Plan, id: ResourceId) -> Result<(), PlanError> {
+    require_buffer(pass, plan, id)?;
+    let resource = &plan.resources[id.index()];
+    if !matches!(resource.origin, Origin::Uploaded(_)) {
+        return Ok(());
+    }
+    let problem = "is uploaded and must not be written".to_owned();
+    Err(PlanError::Binding { pass: pass.to_owned(), binding: resource.label.clone(), problem })
 }
 
 fn require_written(pass: &str, plan: &Plan, id: ResourceId, written: &BTreeSet<ResourceId>) -> Result<(), PlanError> {

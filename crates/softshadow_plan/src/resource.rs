@@ -72,11 +72,11 @@ impl TextureFormat {
 /// Where the contents of a resource come from, and how long they live.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
-    /// Made and used within one run of the plan; zero at first.
+    /// Made and used within one run of the plan; undefined until a pass writes it.
     Transient,
     /// Uploaded, and kept on the device until its key is no longer used.
     Uploaded(ContentKey),
-    /// Kept under its label from stage to stage of one program; zero at first.
+    /// Kept under its label from stage to stage of one program; undefined until a stage writes it.
     Persistent,
     /// A small value that changes from run to run without changing the plan.
     Parameter,

@@ -20,7 +20,7 @@ pub use camera::{Camera, LocalCamera};
 pub use error::SceneError;
 pub use frame::{LocalFrame, look_at};
 pub use light::{Light, LightShape, LightTexture, LocalLight, UpAxis};
-pub use light_samples::{LightSamples, MAX_SAMPLES, SamplePattern, sample_positions, unit_square};
+pub use light_samples::{LightSamples, MAX_SAMPLES, SamplePattern, pass_seed, sample_positions, unit_square};
 pub use local::{Corner, Dropped, LocalScene, SubScene};
 pub use mesh::{MAX_TRIANGLES, Material, Mesh};
 pub use receivers::{LocalPoint, Points, Receivers};

@@ -129,14 +129,29 @@ fn plain_sobol(index: u32) -> [f64; 2] {
 
 /// Two uniform numbers in `[0, 1)` from a cell and a seed (splitmix64).
 fn hash2(cell: u32, seed: u32) -> [f64; 2] {
-    let mut state = (u64::from(seed) << 32 | u64::from(cell)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    // Mixed before it is stepped: neighbouring cells must not walk through each other's numbers.
+    let mut state = splitmix(u64::from(seed) << 32 | u64::from(cell));
     [0; 2].map(|_: u32| {
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / 2f64.powi(53)
+        state = state.wrapping_add(GOLDEN);
+        (splitmix(state) >> 11) as f64 / 2f64.powi(53)
     })
+}
+
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
+fn splitmix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
+/// The seed of a progressive pass: pass 0 has the caller's, and no pass that of another pass or of a neighbouring seed.
+#[must_use]
+pub fn pass_seed(seed: u32, pass: u32) -> u32 {
+    if pass == 0 {
+        return seed;
+    }
+    (splitmix((u64::from(seed) << 32 | u64::from(pass)).wrapping_add(GOLDEN)) >> 32) as u32
 }
 
 /// Square to disc with equal areas and neighbours kept (Shirley and Chiu 1997).
@@ -188,11 +203,19 @@ fn record(shape: &LightShape, place: &LocalLight, p: DVec2) -> [f32; 4] {
         LightShape::Polygon { .. } => on_plane(p.x, p.y),
         LightShape::Sphere { .. } => [p.x as f32, p.y as f32, 0.0, 1.0],
         LightShape::Sun { angular_diameter } => {
-            let spread = (angular_diameter * 0.5).tan();
-            let towards = -place.emission + (place.x_axis * p.x + place.y_axis * p.y) * spread;
+            // Uniform in solid angle, as in `sample_positions`: `share` of the cap lies inside this sample's cone.
+            let cap = 1.0 - (angular_diameter * 0.5).cos();
+            let reach = cap_reach(cap, p.length_squared());
+            let towards = -place.emission + (place.x_axis * p.x + place.y_axis * p.y) * reach;
             towards.as_vec3().extend(0.0).to_array()
         }
     }
+}
+
+/// The factor by which a point of the unit disc is moved off the axis, at distance 1, so that equal areas of the disc become equal
+/// solid angles of a cap of height `cap` = 1 − cosine; `share` is the point's squared radius.
+fn cap_reach(cap: f64, share: f64) -> f64 {
+    (cap * (2.0 - share * cap)).sqrt() / (1.0 - share * cap)
 }
 
 /// Points of equal share on a polygon: the first coordinate chooses a triangle by area and is stretched over it again.
@@ -244,8 +267,7 @@ pub fn sample_positions(
     let (x_axis, y_axis) = (axis / axis.length()).any_orthonormal_pair();
     let place = |r: &[f32; 4]| {
         let (x, y) = (f64::from(r[0]), f64::from(r[1]));
-        let share = x * x + y * y;
-        let reach = axis.length() * (cap * (2.0 - share * cap)).sqrt() / (1.0 - share * cap);
+        let reach = axis.length() * cap_reach(cap, x * x + y * y);
         (center + (x_axis * x + y_axis * y) * reach, true)
     };
     Some(samples.records.iter().map(place).collect())

@@ -70,31 +70,32 @@ impl Points {
         self.normals.as_deref()
     }
 
-    /// A block of the points in local float32: position, unit normal, and whether there is a normal.
+    /// Checks that every point fits local float32.
     ///
     /// # Errors
-    /// [`SceneError::NotFinite`] when a point lies too far from the scene for float32.
-    pub fn local_block(
-        &self,
-        frame: &LocalFrame,
-        range: std::ops::Range<usize>,
-    ) -> Result<Vec<LocalPoint>, SceneError> {
+    /// [`SceneError::NotFinite`] names the first point that lies too far from the scene.
+    pub fn check_local(&self, frame: &LocalFrame) -> Result<(), SceneError> {
+        let is_far = |p: &[f64; 3]| !frame.local_from_world(*p).as_vec3().is_finite();
+        match self.positions.iter().position(is_far) {
+            Some(index) => {
+                Err(SceneError::NotFinite { what: "points, relative to the scene in float32,".into(), index })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// A block of the points in local float32: position, unit normal, and whether there is a normal.
+    #[must_use]
+    pub fn local_block(&self, frame: &LocalFrame, range: std::ops::Range<usize>) -> Vec<LocalPoint> {
         range
             .map(|index| {
-                let position = frame.local_from_world(self.positions[index]).as_vec3();
-                if !position.is_finite() {
-                    return Err(SceneError::NotFinite {
-                        what: "points, relative to the scene in float32,".into(),
-                        index,
-                    });
-                }
                 let normal = self.normals.as_ref().map(|n| DVec3::from(n[index]).normalize_or_zero().as_vec3());
-                Ok(LocalPoint {
-                    position: position.to_array(),
+                LocalPoint {
+                    position: frame.local_from_world(self.positions[index]).as_vec3().to_array(),
                     has_normal: u32::from(normal.is_some()),
                     normal: normal.unwrap_or_default().to_array(),
                     unused: 0,
-                })
+                }
             })
             .collect()
     }
@@ -132,7 +133,7 @@ mod tests {
     #[test]
     fn normals_are_given_unit_length() {
         let points = Points::new(vec![[0.0; 3]], Some(vec![[0.0, 0.0, 5.0]])).unwrap();
-        let block = points.local_block(&LocalFrame::around(None), 0..1).unwrap();
+        let block = points.local_block(&LocalFrame::around(None), 0..1);
         assert_eq!(block[0].normal, [0.0, 0.0, 1.0]);
         assert_eq!(block[0].has_normal, 1);
     }

@@ -41,7 +41,7 @@ impl Default for HardShadowMap {
 }
 
 const DRAW_DEPTH: RasterKernel =
-    RasterKernel { file: "hard_shadow_map/draw_depth.wgsl", vertex: "draw", fragment: None };
+    RasterKernel { file: "hard_shadow_map/draw_depth.wgsl", vertex: "draw", fragment: Some("write_depth") };
 const LOOK_UP: Kernel = Kernel { file: "hard_shadow_map/look_up.wgsl", entry: "look_up" };
 
 /// Light samples of the unshadowed light in a picture.
@@ -143,7 +143,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &HardShadowMap) -> Plan {
 /// The values of the plan's parameters for one light.
 pub(crate) fn values(request: &Request<'_>, settings: &HardShadowMap, light: &Light) -> Result<Values, TechniqueError> {
     let mut values = Values::new();
-    receivers::values(request, &mut values)?;
+    receivers::values(request, &mut values);
     let set = SampleSet { pattern: SamplePattern::Stratified, count: SHADING_SAMPLES, seed: 0 };
     light_buffers::values(request, light, set, &mut values)?;
     let sampling = Sampling {

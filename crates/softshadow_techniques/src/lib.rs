@@ -105,11 +105,11 @@ impl Technique {
         }
     }
 
-    /// Bytes on the device that one receiver takes, beyond the receiver itself.
+    /// Bytes on the device that one receiver takes, beyond the receiver itself, in a scene of so many sub-scenes.
     #[must_use]
-    pub fn bytes_per_receiver(&self, channels: u64) -> u64 {
+    pub fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64) -> u64 {
         match self {
-            Self::RayTraced(settings) => settings.bytes_per_receiver(channels),
+            Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes),
             Self::HardShadowMap(_) => 4 * channels,
         }
     }

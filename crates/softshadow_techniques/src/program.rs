@@ -96,6 +96,9 @@ impl VisibilityProgram<'_> {
     /// As [`Technique::check`] and [`Technique::values`].
     pub fn check(&self) -> Result<(), TechniqueError> {
         self.technique.check()?;
+        if let ReceiverSource::Points(points) = self.receivers {
+            points.check_local(&self.scene.local.frame)?;
+        }
         match self.task(0) {
             Some(task) => self.stage(task).map(|_| ()),
             None => Ok(()),

@@ -18,7 +18,7 @@
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Kernel, Over, Plan, ResourceId, Values};
-use softshadow_scene::{Light, MAX_SAMPLES, SamplePattern};
+use softshadow_scene::{Light, MAX_SAMPLES, SamplePattern, pass_seed};
 
 use crate::TechniqueError;
 use crate::parts::VISIBILITY;
@@ -75,11 +75,12 @@ pub const STANDARD_ERROR: &str = "standard error";
 /// Label of the masks of blocked samples.
 pub const BLOCKED: &str = "blocked samples";
 
-/// Label of the number of rays that a driver cut short.
-pub const UNFINISHED: &str = "unfinished rays";
+/// Label, before a sub-scene's number, of how many receivers needed rays and how many rays a driver cut short.
+pub const TRACE_COUNTS: &str = "trace counts";
 
 const BEGIN: Kernel = Kernel { file: "ray_traced/begin.wgsl", entry: "begin" };
 const GATHER: Kernel = Kernel { file: "ray_traced/gather.wgsl", entry: "gather" };
+const NARROW: Kernel = Kernel { file: "ray_traced/narrow.wgsl", entry: "narrow" };
 const COUNT_GROUPS: Kernel = Kernel { file: "ray_traced/count_groups.wgsl", entry: "count_groups" };
 const TRACE: Kernel = Kernel { file: "ray_traced/trace.wgsl", entry: "trace" };
 const CHOOSE: Kernel = Kernel { file: "ray_traced/choose.wgsl", entry: "choose" };
@@ -98,6 +99,8 @@ pub struct TraceRange {
 
 /// Bytes of `Candidate` of `hierarchy.wgsl`.
 const CANDIDATE_BYTES: u64 = 12;
+/// Bytes of `CandidateList` before its items.
+const LIST_HEADER_BYTES: u64 = 16;
 
 /// `ProbeImage` of `choose.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -122,20 +125,21 @@ impl RayTraced {
         Ok(())
     }
 
-    pub(crate) fn bytes_per_receiver(&self, channels: u64) -> u64 {
-        // Masks, the number of samples decided, the candidate, values and their errors.
-        u64::from(self.words()) * 4 + 4 + CANDIDATE_BYTES + 8 * channels
+    pub(crate) fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64) -> u64 {
+        // Masks, the number of samples decided, both lists of candidates, values and their errors.
+        u64::from(self.words()) * 4 + 4 + 2 * sub_scenes * CANDIDATE_BYTES + 8 * channels
     }
 
     fn words(&self) -> u32 {
         self.samples.div_ceil(32)
     }
 
-    fn sampling(&self, pass_index: u32) -> Sampling {
+    fn sampling(&self, pass_index: u32, scene_is_empty: bool) -> Sampling {
         Sampling {
             count: self.samples,
             words: self.words(),
-            probes: if self.probes == 0 { self.samples } else { self.probes },
+            // Nothing is traced in an empty scene, so no probe could call for more.
+            probes: if self.probes == 0 || scene_is_empty { self.samples } else { self.probes },
             pass_index,
             passes: self.passes,
             ..Sampling::default()
@@ -171,41 +175,50 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
         let range = |plan: &mut Plan, stage: &str, index: usize| {
             plan.parameter(format!("{stage} range {index}"), size_of::<TraceRange>() as u64)
         };
+        let size = |plan: &mut Plan, stage: &str, index: usize, range: ResourceId, candidates: ResourceId| {
+            let size = plan.buffer(format!("{stage} dispatch {index}"), 12);
+            let once = Over::Items { count: 1, work_per_item: 1 };
+            plan.compute(format!("size {stage} {index}"), "sizes the dispatch over the candidates", COUNT_GROUPS, once)
+                .bind("trace_range", range)
+                .bind("candidates", candidates)
+                .bind("dispatch_size", size);
+            size
+        };
+        let list = |plan: &mut Plan, label: &str, index: usize| {
+            let list = plan.buffer(format!("{label} {index}"), LIST_HEADER_BYTES + count as u64 * CANDIDATE_BYTES);
+            plan.clear(format!("no {label} {index}"), "the list is empty at first", list);
+            list
+        };
         let mut candidates = Vec::with_capacity(corners.len());
         for (index, nodes) in nodes.iter().enumerate() {
-            let list = plan.buffer(format!("candidates {index}"), count as u64 * CANDIDATE_BYTES);
-            let length = plan.buffer(format!("candidate count {index}"), 4);
+            let gathered = list(&mut plan, "gathered", index);
             let gather_range = range(&mut plan, "gather", index);
-            plan.clear(format!("empty list {index}"), "no candidate yet", length);
-            let why = "finds the receivers with anything between them and the light";
+            let why = "finds the receivers with any box between them and the light";
             plan.compute(format!("gather {index}"), why, GATHER, items(4))
                 .bind("light", light.light)
                 .bind("trace_range", gather_range)
                 .bind("receivers", receivers)
                 .bind("nodes", *nodes)
                 .bind("decided", decided)
-                .bind("candidates", list)
-                .bind("candidate_count", length);
-            candidates.push((list, length));
+                .bind("candidates", gathered);
+            let narrow_range = range(&mut plan, "narrow", index);
+            let groups = size(&mut plan, "narrow", index, narrow_range, gathered);
+            let narrowed = list(&mut plan, "candidates", index);
+            let why = "keeps the receivers with a triangle between them and the light";
+            plan.compute(format!("narrow {index}"), why, NARROW, Over::Indirect(groups))
+                .bind("light", light.light)
+                .bind("receivers", receivers)
+                .bind("nodes", *nodes)
+                .bind("corners", corners[index])
+                .bind("candidates", gathered)
+                .bind("narrowed", narrowed);
+            candidates.push(narrowed);
         }
-        let unfinished = plan.buffer(UNFINISHED, 4);
-        plan.clear("no ray unfinished", "no ray has been cut short yet", unfinished);
-        plan.outputs.push(unfinished);
         let trace = |plan: &mut Plan, stage: &str, why: &str| {
             for index in 0..corners.len() {
                 let trace_range = range(plan, stage, index);
-                let size = plan.buffer(format!("{stage} dispatch {index}"), 12);
-                let once = Over::Items { count: 1, work_per_item: 1 };
-                plan.compute(
-                    format!("size {stage} {index}"),
-                    "sizes the dispatch over the candidates",
-                    COUNT_GROUPS,
-                    once,
-                )
-                .bind("trace_range", trace_range)
-                .bind("candidate_count", candidates[index].1)
-                .bind("dispatch_size", size);
-                plan.compute(format!("{stage} {index}"), why, TRACE, Over::Indirect(size))
+                let groups = size(plan, stage, index, trace_range, candidates[index]);
+                plan.compute(format!("{stage} {index}"), why, TRACE, Over::Indirect(groups))
                     .bind("light", light.light)
                     .bind("sampling", light.sampling)
                     .bind("trace_range", trace_range)
@@ -214,10 +227,8 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
                     .bind("nodes", nodes[index])
                     .bind("corners", corners[index])
                     .bind("decided", decided)
-                    .bind("candidates", candidates[index].0)
-                    .bind("candidate_count", candidates[index].1)
-                    .bind("blocked", blocked)
-                    .bind("unfinished", unfinished);
+                    .bind("candidates", candidates[index])
+                    .bind("blocked", blocked);
             }
         };
         if settings.probes == 0 {
@@ -226,6 +237,12 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
             trace(&mut plan, "probe", "traces the first samples of the candidates");
             append_choice(&mut plan, items(settings.probes / 4 + 1), [light.sampling, receivers, blocked, decided]);
             trace(&mut plan, "trace", "traces the other samples where the probes disagree");
+        }
+        for (index, list) in candidates.into_iter().enumerate() {
+            let counts = plan.buffer(format!("{TRACE_COUNTS} {index}"), LIST_HEADER_BYTES);
+            let why = "tells how many receivers needed rays, and whether any ray was cut short";
+            plan.copy(format!("report {index}"), why, [list, counts], LIST_HEADER_BYTES);
+            plan.outputs.push(counts);
         }
     }
     append_results(&mut plan, request, settings, &light, [receivers, blocked, decided]);
@@ -292,14 +309,16 @@ pub(crate) fn values(
     pass: u32,
 ) -> Result<Values, TechniqueError> {
     let mut values = Values::new();
-    receivers::values(request, &mut values)?;
-    let set = SampleSet { pattern: settings.pattern, count: settings.samples, seed: settings.seed.wrapping_add(pass) };
+    receivers::values(request, &mut values);
+    let set = SampleSet { pattern: settings.pattern, count: settings.samples, seed: pass_seed(settings.seed, pass) };
     light_buffers::values(request, light, set, &mut values)?;
-    values.insert("sampling".into(), bytemuck::bytes_of(&settings.sampling(pass)).to_vec());
+    let sampling = settings.sampling(pass, request.scene.local.sub_scenes.is_empty());
+    values.insert("sampling".into(), bytemuck::bytes_of(&sampling).to_vec());
     for (index, sub_scene) in request.scene.local.sub_scenes.iter().enumerate() {
         let node_count = sub_scene.nodes.len() as u32;
         let stages = [
-            ("gather", 0, settings.samples),
+            ("gather", 0, 1),
+            ("narrow", 0, 1),
             ("probe", 0, settings.probes),
             ("trace", settings.probes, settings.samples),
         ];

@@ -16,7 +16,7 @@ const SAMPLES: u32 = 64;
 /// Student's t with 63 degrees of freedom exceeds 3 in 0.4 % of all cases and 5 in 0.0005 %.
 const PASSES: u32 = 64;
 /// Receivers of a call share their samples, so they err together; each group has its own seeds.
-const GROUPS: usize = 8;
+const GROUPS: usize = 32;
 
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Coverage {
@@ -71,7 +71,7 @@ impl Case<'_> {
         let mut coverage = Coverage::default();
         let mut random = Random(11);
         for group in 0..GROUPS {
-            let positions = random.points(96, self.x, self.y, [0.0, 0.0]);
+            let positions = random.points(24, self.x, self.y, [0.0, 0.0]);
             let receivers = match self.normal {
                 Some(normal) => surface_points(positions.clone(), normal),
                 None => points(positions.clone()),

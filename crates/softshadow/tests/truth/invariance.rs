@@ -139,7 +139,7 @@ fn order_winding_and_meshes_change_no_bit() {
     }
     for t in &mut shuffled {
         t.rotate_left((random.next() % 3) as usize);
-        if random.next() % 2 == 0 {
+        if random.next().is_multiple_of(2) {
             t.swap(0, 1);
         }
     }

@@ -57,7 +57,8 @@ fn a_light_without_size_casts_the_hard_shadow_that_small_ones_approach() {
         (-0.3..=0.4).contains(&x) && (-0.2..=0.25).contains(&y)
     };
     let truth: Vec<f32> = receivers.iter().map(|p| if hidden(p) { 0.0 } else { 1.0 }).collect();
-    let shapes: [(&str, fn(f64) -> LightShape); 4] = [
+    type OfSize = fn(f64) -> LightShape;
+    let shapes: [(&str, OfSize); 4] = [
         ("rectangle", |s| rectangle(s, s)),
         ("disc", |s| LightShape::Disc { radius: s }),
         ("sphere", |s| LightShape::Sphere { radius: s }),

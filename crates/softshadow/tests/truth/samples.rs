@@ -32,6 +32,9 @@ fn jitters(seed: u32) -> Vec<[f64; 2]> {
     cells
 }
 
+/// Two numbers of a cell or of a cell and its neighbour.
+type Pair<'a> = &'a dyn Fn(&[[f64; 2]], usize) -> [f64; 2];
+
 /// Pearson's correlation; for independent numbers its standard deviation is 1/√n.
 fn correlation(pairs: &[[f64; 2]]) -> f64 {
     let n = pairs.len() as f64;
@@ -43,11 +46,11 @@ fn correlation(pairs: &[[f64; 2]]) -> f64 {
 #[test]
 fn jitters_are_independent_of_each_other() {
     let all: Vec<Vec<[f64; 2]>> = (0..32).map(jitters).collect();
-    let between = |pair: &dyn Fn(&[[f64; 2]], usize) -> [f64; 2]| {
+    let between = |pair: Pair<'_>| {
         let pairs: Vec<[f64; 2]> = all.iter().flat_map(|cells| (1..64).map(|c| pair(cells, c))).collect();
         (correlation(&pairs), 5.0 / (pairs.len() as f64).sqrt())
     };
-    let kinds: [(&str, &dyn Fn(&[[f64; 2]], usize) -> [f64; 2]); 4] = [
+    let kinds: [(&str, Pair<'_>); 4] = [
         ("the two coordinates of a cell", &|cells, c| cells[c]),
         ("the first coordinates of neighbours", &|cells, c| [cells[c - 1][0], cells[c][0]]),
         ("a second coordinate and the neighbour's first", &|cells, c| [cells[c - 1][1], cells[c][0]]),

@@ -75,6 +75,21 @@ fn uploads_are_kept_while_they_are_used_and_then_given_back() {
 }
 
 #[test]
+fn a_failed_run_leaves_nothing_on_the_device_that_is_trusted() {
+    let engine = engine();
+    let points = Content::new(&[1; 320]);
+    let given = BTreeMap::from([(points.key, points.clone())]);
+    let run_with = |given: &BTreeMap<_, _>| {
+        engine.run(&Stages(vec![uploaded(&points)]), given, Timing::Device, &mut |_| true).map(|report| report.stages)
+    };
+    assert_eq!((run_with(&given), run_with(&BTreeMap::new())), (Ok(1), Ok(1)));
+    let (plan, _) = place(10, 1);
+    assert!(run(&engine, &Stages(vec![(plan, Values::new())]), Timing::Device).is_err());
+    assert_eq!(run_with(&BTreeMap::new()), Err(contents("points", "its contents were not given")), "uploaded again");
+    assert_eq!(run_with(&given), Ok(1));
+}
+
+#[test]
 fn plans_are_checked_before_the_driver_is_asked() {
     let (mut plan, values) = place(10, 1);
     plan.passes[0].bindings.pop();

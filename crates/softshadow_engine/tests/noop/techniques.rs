@@ -105,6 +105,9 @@ fn check_sizes(program: &VisibilityProgram<'_>, rows: &[BTreeMap<String, usize>]
         if task.light == 0 && task.pass == 0 {
             expected.insert("receivers".to_owned(), count * 32);
         }
+        if matches!(program.technique, Technique::RayTraced(_)) {
+            expected.insert("unfinished rays".to_owned(), 4);
+        }
         if last_pass {
             expected.insert("visibility".to_owned(), count * 4 * 3);
             if let Technique::RayTraced(settings) = program.technique {

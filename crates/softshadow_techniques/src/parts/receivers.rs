@@ -1,8 +1,8 @@
 //! The receiver stage: one record a receiver, written once a block, from which every technique starts.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use softshadow_plan::{
-    Blend, ColorTarget, Compare, DepthTarget, Kernel, Origin, Over, Plan, Raster, RasterKernel, ResourceId, Shape,
+    Blend, ColorTarget, Compare, DepthTarget, Kernel, Origin, Over, Plan, Raster, RasterKernel, ResourceId,
     TextureFormat, Values, VertexSource,
 };
 use softshadow_scene::{LocalCamera, LocalPoint, Points};
@@ -93,18 +93,14 @@ pub fn append(plan: &mut Plan, request: &Request<'_>) -> ResourceId {
 }
 
 /// The values of the parameters that [`append`] added.
-///
-/// # Errors
-/// A point that does not fit float32 in the scene's frame.
-pub fn values(request: &Request<'_>, values: &mut Values) -> Result<(), softshadow_scene::SceneError> {
+pub fn values(request: &Request<'_>, values: &mut Values) {
     if !request.opens_block {
-        return Ok(());
+        return;
     }
     match request.receivers {
         ReceiverSource::Camera(camera) => camera_values(request, &camera.local(&request.scene.local.frame), values),
-        ReceiverSource::Points(points) => point_values(request, points, values)?,
+        ReceiverSource::Points(points) => point_values(request, points, values),
     }
-    Ok(())
 }
 
 fn append_camera(plan: &mut Plan, request: &Request<'_>, size: [u32; 2], receivers: ResourceId) {
@@ -196,27 +192,10 @@ fn camera_values(request: &Request<'_>, camera: &LocalCamera, values: &mut Value
     }
 }
 
-fn point_values(
-    request: &Request<'_>,
-    points: &Points,
-    values: &mut Values,
-) -> Result<(), softshadow_scene::SceneError> {
+fn point_values(request: &Request<'_>, points: &Points, values: &mut Values) {
     let block = request.block;
-    let local = points.local_block(&request.scene.local.frame, block.first..block.first + block.count)?;
+    let local = points.local_block(&request.scene.local.frame, block.first..block.first + block.count);
     values.insert("points".into(), bytemuck::cast_slice(&local).to_vec());
     let range = PointRange { scene_extent: request.scene.local.extent };
     values.insert("point range".into(), bytemuck::bytes_of(&range).to_vec());
-    Ok(())
-}
-
-/// How far a receiver is moved off its surface, in local units (`receiver_lift` of `shared/receiver.wgsl`).
-#[must_use]
-pub fn lift(position: [f32; 3], scene_extent: f32) -> f32 {
-    14.0 * (f32::EPSILON * 0.5) * (Vec3::from(position).abs().max_element() + scene_extent)
-}
-
-/// The shape of the receivers' buffer for `count` receivers.
-#[must_use]
-pub fn shape(count: u64) -> Shape {
-    Shape::Buffer { bytes: count * RECEIVER_BYTES }
 }

@@ -55,15 +55,17 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
             add("decided samples".into(), count * 4);
             add("standard error".into(), count * 4 * u64::from(request.channels));
             for n in 0..sub_scenes.len() {
-                // A receiver and the ends of its walk for each that may need rays; their number; and a dispatch in x, y, z.
+                // A receiver and the ends of its walk for each that may need rays, and their number.
                 add(format!("candidates {n}"), count * u64::from(candidate.bytes));
                 add(format!("candidate count {n}"), 4);
-                add(format!("dispatch size {n}"), 12);
-                add(format!("gather range {n}"), 8);
-                add(format!("trace range {n}"), 8);
-                if settings.probes > 0 {
-                    add(format!("probe range {n}"), 8);
+                add(format!("gather range {n}"), 16);
+                for round in if settings.probes > 0 { &["probe", "trace"][..] } else { &["trace"] } {
+                    add(format!("{round} range {n}"), 16);
+                    add(format!("{round} dispatch {n}"), 12);
                 }
+            }
+            if !sub_scenes.is_empty() {
+                add("unfinished rays".into(), 4);
             }
             if settings.probes > 0 && !sub_scenes.is_empty() {
                 add("probe image".into(), 8);

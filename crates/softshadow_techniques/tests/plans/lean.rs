@@ -11,7 +11,7 @@ fn traced(probes: u32) -> Technique {
 }
 
 /// The passes that find the receivers with anything between them and the light.
-const GATHERED: &[&str] = &["empty list 0", "gather 0", "count groups 0"];
+const GATHERED: &[&str] = &["empty list 0", "gather 0", "no ray unfinished"];
 
 fn labels(plan: &Plan) -> Vec<&str> {
     plan.passes.iter().map(|p| p.label.as_str()).collect()
@@ -30,8 +30,11 @@ fn the_plainest_ray_traced_request_probes_and_shades_nothing() {
     let fixture = Fixture::new();
     let request = fixture.request(1, fixture.points());
     let plan = traced(0).plan(&request);
-    assert_eq!(labels(&plan), [&["place points", "open masks"], GATHERED, &["trace 0", "resolve"]].concat());
-    assert_eq!(outputs(&plan), ["visibility", "receivers"]);
+    assert_eq!(
+        labels(&plan),
+        [&["place points", "open masks"], GATHERED, &["size trace 0", "trace 0", "resolve"]].concat()
+    );
+    assert_eq!(outputs(&plan), ["unfinished rays", "visibility", "receivers"]);
     assert_eq!(plan.find("sample radiance"), None);
     // Each of these asks for one thing more, and gets it.
     let textured = traced(0).plan(&Request { channels: 3, ..request });
@@ -63,7 +66,7 @@ fn the_plainest_hard_shadow_has_three_passes() {
 fn probing_is_chosen_between_two_rounds() {
     let fixture = Fixture::new();
     let plan = traced(4).plan(&fixture.request(1, fixture.points()));
-    let rounds: &[&str] = &["probe 0", "choose", "trace 0", "resolve"];
+    let rounds: &[&str] = &["size probe 0", "probe 0", "choose", "size trace 0", "trace 0", "resolve"];
     assert_eq!(labels(&plan), [&["place points", "open masks"], GATHERED, rounds].concat());
 }
 
@@ -105,11 +108,14 @@ fn results_leave_with_the_last_pass_alone() {
     last.wants.sample_masks = true;
     last.wants.picture = Some(Shading::Integrated);
     let plan = traced(0).plan(&last);
-    assert_eq!(outputs(&plan), ["color", "visibility", "standard error", "blocked samples"]);
+    assert_eq!(outputs(&plan), ["unfinished rays", "color", "visibility", "standard error", "blocked samples"]);
     let middle = Request { closes_light: false, closes_block: false, ..last };
-    assert!(outputs(&traced(0).plan(&middle)).is_empty());
+    assert_eq!(outputs(&traced(0).plan(&middle)), ["unfinished rays"]);
     let other_light = Request { closes_block: false, ..last };
-    assert_eq!(outputs(&traced(0).plan(&other_light)), ["visibility", "standard error", "blocked samples"]);
+    assert_eq!(
+        outputs(&traced(0).plan(&other_light)),
+        ["unfinished rays", "visibility", "standard error", "blocked samples"]
+    );
 }
 
 #[test]
@@ -120,7 +126,7 @@ fn an_empty_scene_traces_and_draws_nothing() {
             for receivers in [fixture.camera(), fixture.points()] {
                 let plan = technique.plan(&fixture.request(scene, receivers));
                 let looks = |label: &&str| {
-                    ["trace", "probe", "gather", "choose", "draw"].iter().any(|word| label.starts_with(word))
+                    ["trace", "probe", "gather", "size", "choose", "draw"].iter().any(|word| label.starts_with(word))
                 };
                 assert_eq!(!labels(&plan).iter().any(looks), empty, "{plan}");
             }

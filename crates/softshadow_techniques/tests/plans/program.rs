@@ -1,6 +1,7 @@
 //! The program of a whole call: every block, light and pass once, in that order, with receivers first and results last.
 
 use softshadow_plan::{Host, Program, Step, check};
+use softshadow_scene::MAX_SAMPLES;
 use softshadow_techniques::{RayTraced, Shading, StageTask, Technique, VisibilityProgram, Wants, blocks};
 
 use crate::requests::Fixture;
@@ -43,10 +44,13 @@ fn every_block_light_and_pass_has_its_stage() {
 fn stages_open_and_close_their_blocks() {
     let (fixture, technique) = (Fixture::new(), passes(2));
     let program = program(&fixture, &technique);
+    let mut host = Host::default();
+    // See `limits.rs`.
+    host.limits.storage_buffers += 1;
     let mut rows = Vec::new();
     let mut index = 0;
     while let Step::Run(stage) = program.step(index, &[]) {
-        check(&stage.plan, &Host::default()).unwrap();
+        check(&stage.plan, &host).unwrap();
         let has = |label: &str| stage.plan.passes.iter().any(|p| p.label == label);
         let leaves = |label: &str| stage.plan.outputs.iter().any(|id| stage.plan.resources[id.index()].label == label);
         rows.push([has("draw triangle ids 0"), has("place receivers 0"), leaves("visibility"), leaves("color")]);
@@ -61,21 +65,21 @@ fn stages_open_and_close_their_blocks() {
 #[test]
 fn a_program_that_cannot_run_says_so_before_it_starts() {
     let fixture = Fixture::new();
-    for (settings, word) in [
-        (RayTraced { samples: 0, ..RayTraced::default() }, "ray_traced samples: must lie between 1 and 65536, got 0"),
-        (
-            RayTraced { samples: 65_537, ..RayTraced::default() },
-            "ray_traced samples: must lie between 1 and 65536, got 65537",
-        ),
-        (RayTraced { passes: 0, ..RayTraced::default() }, "ray_traced passes: must be at least 1"),
+    let samples = format!("ray_traced samples: must lie between 1 and {MAX_SAMPLES}, got ");
+    for (settings, words) in [
+        (RayTraced { samples: 0, ..RayTraced::default() }, format!("{samples}0")),
+        (RayTraced { samples: MAX_SAMPLES + 1, ..RayTraced::default() }, format!("{samples}{}", MAX_SAMPLES + 1)),
+        (RayTraced { passes: 0, ..RayTraced::default() }, "ray_traced passes: must be at least 1".into()),
         (
             RayTraced { probes: 64, ..RayTraced::default() },
-            "ray_traced probes: must be fewer than the 64 samples, or 0 for none",
+            "ray_traced probes: must be fewer than the 64 samples, or 0 for none".into(),
         ),
     ] {
         let technique = Technique::RayTraced(settings);
-        assert_eq!(program(&fixture, &technique).check().unwrap_err().to_string(), word);
+        assert_eq!(program(&fixture, &technique).check().unwrap_err().to_string(), words);
     }
+    let most = Technique::RayTraced(RayTraced { samples: MAX_SAMPLES, ..RayTraced::default() });
+    assert_eq!(program(&fixture, &most).check(), Ok(()));
     for resolution in [15, 16_385] {
         let technique = Technique::HardShadowMap(softshadow_techniques::HardShadowMap { resolution });
         let words = program(&fixture, &technique).check().unwrap_err().to_string();
