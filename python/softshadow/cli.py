@@ -12,6 +12,7 @@ from typing import Any
 
 from . import __version__, scenes
 from .cli_values import parse_camera, parse_light, parse_size, parse_technique
+from .device import quiet_driver
 from .diagnosis import doctor
 from .errors import SceneError, SettingsError, SoftShadowError, TooLargeError
 from .files import png_or_npy
@@ -35,6 +36,7 @@ techniques   ray-traced:samples=64,seed=1      hard-shadow-map:resolution=2048
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs a command; 0 is success, 2 a mistake in the input, 1 a failure of the machine."""
     options = _parser().parse_args(arguments)
+    quiet_driver()
     try:
         with warnings.catch_warnings():
             setattr(warnings, "showwarning", _say_warning)  # noqa: B010 - its type leaves no room for *_

@@ -17,6 +17,7 @@ import numpy as np
 from . import scenes
 from .camera import Camera, look_at
 from .comparison import compare
+from .device import quiet_driver
 from .lights import Light, RectLight
 from .picture import render
 from .scene import Mesh, Scene
@@ -29,6 +30,7 @@ _REFERENCE = RayTraced(samples=1024, pattern="low_discrepancy", seed=1)
 
 def main() -> int:
     """Renders into the folder given by ``--output``; the exit code is 0."""
+    quiet_driver()
     parser = argparse.ArgumentParser(prog="softshadow.demo", description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--output", type=Path, default=Path("demo"))
     parser.add_argument("--device", default="auto")

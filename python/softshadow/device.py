@@ -34,6 +34,11 @@ def context(device: Device | str) -> _core.Context:
     return made
 
 
+def quiet_driver() -> None:
+    """For the library's own programs: Mesa's device-selection layer complains where there is no desktop session."""
+    os.environ.setdefault("VK_LOADER_LAYERS_DISABLE", "VK_LAYER_MESA_device_select")
+
+
 def _name(device: object) -> str:
     if isinstance(device, str):
         return device

@@ -123,7 +123,7 @@ NONSENSE = [
     (lambda: camera(frame="blender"), ss.SettingsError, "opencv"),
     # techniques
     (lambda: ss.RayTraced(samples=0), ss.SettingsError, "samples"),
-    (lambda: ss.RayTraced(samples=10**9), ss.SettingsError, "samples.*65536"),
+    (lambda: ss.RayTraced(samples=10**9), ss.SettingsError, "samples.*32768"),
     (lambda: ss.RayTraced(samples=-1), ss.SettingsError, "samples"),
     (lambda: ss.RayTraced(samples=1.5), ss.SettingsError, "samples"),
     (lambda: ss.RayTraced(samples=True), ss.SettingsError, "samples"),

@@ -137,6 +137,28 @@ def test_light_points_are_the_samples_of_the_light(scene):
     np.testing.assert_array_equal(points.positions, ss.light_points(light, 256, scene=scene).positions)
 
 
+def test_visible_samples_are_those_of_light_points(scene):
+    light, camera = light_above(), camera_above((16, 12))
+    technique = ss.RayTraced(samples=40)
+    result = visibility(scene, light, camera=camera, technique=technique, sample_masks=True, receivers=True)
+    assert result.visible_samples.shape == (12, 16, 40)
+    np.testing.assert_allclose(result.visible_samples.mean(axis=2), result.values, atol=1e-6)
+    # The card lies at y = 1 and hides a sample where the ray crosses it.
+    samples = ss.light_points(light, 40, scene=scene).positions.reshape(-1, 3)
+    on_floor = (result.positions[..., 1] < 0.5)[..., None]
+    origins = result.positions[:, :, None]
+    across = origins + (samples - origins) * ((1 - origins[..., 1]) / (samples[:, 1] - origins[..., 1]))[..., None]
+    inside = np.abs(across[..., [0, 2]]).max(axis=-1)
+    clear = np.abs(inside - 0.5) > 1e-4
+    assert ((inside > 0.5) == result.visible_samples)[on_floor & clear].all()
+    assert (~result.visible_samples & on_floor).sum() > 100
+    two = visibility(scene, [light, light_above(2.0)], camera=camera, technique=technique, sample_masks=True)
+    assert two.visible_samples.shape == (2, 12, 16, 40)
+    for other in (ss.HardShadowMap(), ss.RayTraced(probes=16)):
+        with pytest.raises(ss.SettingsError, match="sample_masks"):
+            visibility(scene, light, camera=camera, technique=other, sample_masks=True)
+
+
 def test_light_points_of_a_sphere_fill_its_disc_as_each_receiver_sees_it(scene, floor_points):
     light = ss.SphereLight(radius=0.5, world_from_light=POSE)
     points = ss.light_points(light, 32, floor_points, scene=scene)

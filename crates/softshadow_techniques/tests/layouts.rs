@@ -126,6 +126,27 @@ fn every_uploaded_struct_lies_as_its_twin() {
 }
 
 #[test]
+fn lists_of_candidates_are_as_long_as_plans_say() {
+    // Only kernels read and write them; plans know the bytes, and the front door the first words.
+    let list = twin("ray_traced/hierarchy.wgsl", "CandidateList");
+    let named = |name: &str| list.members.iter().find(|(n, _)| n == name).map(|(_, offset)| *offset);
+    assert_eq!((named("count"), named("unfinished"), named("items")), (Some(0), Some(4), Some(16)));
+    assert_eq!(list.members.last().map(|(name, _)| name.as_str()), Some("items"));
+    let candidate = twin("ray_traced/hierarchy.wgsl", "Candidate");
+    assert_eq!(candidate.bytes, 12);
+    let words = ["receiver", "first_node", "last_node"].iter().zip([0, 4, 8]).map(|(n, at)| ((*n).to_owned(), at));
+    assert_eq!(candidate.members, words.collect::<Vec<_>>());
+    for file in ["count_groups", "gather", "narrow", "trace"] {
+        let file = format!("ray_traced/{file}.wgsl");
+        assert_eq!(
+            (twin(&file, "CandidateList"), twin(&file, "Candidate")),
+            (list.clone(), candidate.clone()),
+            "{file}"
+        );
+    }
+}
+
+#[test]
 fn the_text_says_what_the_compiler_does() {
     macro_rules! offsets {
         ($name:ty, $($member:ident),+) => {

@@ -20,4 +20,5 @@ mod pixels;
 mod same_samples;
 mod samples;
 mod shapes;
+mod sub_scenes;
 mod watertight;

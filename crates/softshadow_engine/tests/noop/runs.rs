@@ -1,7 +1,7 @@
 //! What a run reports, and what it hands out.
 
 use softshadow_engine::{DeviceKind, Engine, Timing};
-use softshadow_plan::{Host, Limits, Plan, Program, Step, Values};
+use softshadow_plan::{Host, Plan, Program, Step, Values};
 
 use crate::programs::{Stages, engine, place, run};
 
@@ -10,10 +10,9 @@ fn the_engine_says_what_it_runs_on() {
     let engine = engine();
     assert_eq!((engine.adapter().device_type, engine.adapter().backend.as_str()), (DeviceKind::Noop, "noop"));
     assert!(!engine.is_lost());
-    // The smallest device that WebGPU allows, but for the storage buffers of a pass: what it accepts runs nearly everywhere.
-    let (limits, core) = (engine.host().limits, Host::default().limits);
-    assert_eq!(limits, Limits { storage_buffers: limits.storage_buffers, ..core });
-    assert!((8..=9).contains(&limits.storage_buffers));
+    // The smallest device that WebGPU allows: what it accepts runs everywhere.
+    assert_eq!(engine.host().limits, Host::default().limits);
+    assert_eq!(engine.host().limits.storage_buffers, 8);
     assert_eq!(engine.adapter().storage_binding_bytes, 128 << 20);
 }
 
@@ -71,7 +70,9 @@ fn every_pass_is_timed_alone_when_that_is_asked_for() {
 }
 
 /// Clears a buffer and lets the next stage know its words; stops when they are what was expected.
-struct Deciding;
+struct Deciding {
+    hands_out: bool,
+}
 
 impl Program for Deciding {
     fn step(&self, index: usize, decision: &[u32]) -> Step {
@@ -81,17 +82,83 @@ impl Program for Deciding {
         }
         let mut plan = Plan::new("decide");
         let words = plan.buffer("words", 12);
+        let others = plan.buffer("others", 8);
         plan.clear("reset", "the decision begins at zero", words);
+        plan.clear("reset others", "the caller is told nothing", others);
         plan.decision = Some(words);
+        plan.outputs.push(others);
+        plan.outputs.extend(self.hands_out.then_some(words));
         Step::run(plan, Values::new())
     }
 }
 
+/// Labels and bytes of every stage's outputs.
+fn handed_out(hands_out: bool) -> Vec<Vec<(String, Vec<u8>)>> {
+    let (report, stages) = run(&engine(), &Deciding { hands_out }, Timing::Device).unwrap();
+    assert_eq!(report.stages, 2, "the second stage saw three zero words");
+    stages.into_iter().map(|s| s.outputs.into_iter().collect()).collect()
+}
+
 #[test]
 fn the_decision_reaches_the_next_stage_and_nobody_else() {
-    let (report, stages) = run(&engine(), &Deciding, Timing::Device).unwrap();
-    assert_eq!(report.stages, 2, "the second stage saw three zero words");
-    assert!(stages.iter().all(|s| s.outputs.is_empty()));
+    assert_eq!(handed_out(false), vec![vec![("others".to_owned(), vec![0; 8])]; 2]);
+}
+
+#[test]
+fn a_decision_that_is_an_output_reaches_the_caller_too() {
+    let both = vec![("others".to_owned(), vec![0; 8]), ("words".to_owned(), vec![0; 12])];
+    assert_eq!(handed_out(true), vec![both; 2]);
+}
+
+/// A plan that keeps a cleared buffer with this label, and hands it out.
+fn keeps(label: &str, bytes: u64) -> (Plan, Values) {
+    let mut plan = Plan::new("keep");
+    let kept = plan.persistent(label, bytes);
+    plan.clear("reset", "zeros are what is kept", kept);
+    plan.outputs.push(kept);
+    (plan, Values::new())
+}
+
+/// A plan that hands out what an earlier one kept.
+fn hands_out(label: &str, bytes: u64) -> (Plan, Values) {
+    let mut plan = Plan::new("hand out");
+    let kept = plan.persistent(label, bytes);
+    plan.outputs.push(kept);
+    (plan, Values::new())
+}
+
+#[test]
+fn a_parameter_and_a_persistent_of_one_label_and_size_are_two_buffers() {
+    // A uniform and an array of the kernel, each before and after the persistent buffer: in one run, then in runs of their own.
+    for (label, bytes) in [("point range", 4), ("points", 320)] {
+        let given = || {
+            let (plan, mut values) = place(10, 1);
+            values.insert(label.into(), vec![0xff; bytes]);
+            (plan, values)
+        };
+        let kept = || keeps(label, bytes as u64);
+        let last = || hands_out(label, bytes as u64);
+        for stages in [vec![kept(), given(), last()], vec![given(), kept(), given(), last()]] {
+            let (_, reports) = run(&engine(), &Stages(stages.clone()), Timing::Device).unwrap();
+            assert_eq!(reports.len(), stages.len());
+            let one_engine = engine();
+            let alone = stages.into_iter().map(|stage| {
+                let (_, mut reports) = run(&one_engine, &Stages(vec![stage]), Timing::Device).unwrap();
+                reports.remove(0).outputs
+            });
+            let together: Vec<_> = reports.into_iter().map(|report| report.outputs).collect();
+            assert_eq!(alone.collect::<Vec<_>>(), together);
+            assert_eq!(together.last().unwrap()[label], vec![0; bytes], "the parameter's value went elsewhere");
+        }
+    }
+}
+
+#[test]
+fn copies_and_clears_are_what_this_backend_does() {
+    // Otherwise zeros of the tests above would say nothing.
+    let mut plan = Plan::new("copy");
+    let ones = plan.uploaded("ones", &softshadow_plan::Content::new(&[0xff; 16]));
+    assert_eq!(plan.resources[ones.index()].bytes(), 16);
 }
 
 #[test]

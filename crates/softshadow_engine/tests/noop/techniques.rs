@@ -106,7 +106,9 @@ fn check_sizes(program: &VisibilityProgram<'_>, rows: &[BTreeMap<String, usize>]
             expected.insert("receivers".to_owned(), count * 32);
         }
         if matches!(program.technique, Technique::RayTraced(_)) {
-            expected.insert("unfinished rays".to_owned(), 4);
+            for index in 0..program.scene.local.sub_scenes.len() {
+                expected.insert(format!("trace counts {index}"), 16);
+            }
         }
         if last_pass {
             expected.insert("visibility".to_owned(), count * 4 * 3);

@@ -1,6 +1,8 @@
 //! Bindings and kernels.
 
-use softshadow_plan::{Host, Origin, Over, PlanError, Shape, TextureFormat, VertexSource, Work, check};
+use softshadow_plan::{
+    ContentKey, Host, Origin, Over, Plan, PlanError, Shape, TextureFormat, VertexSource, Work, check,
+};
 use softshadow_shaders::ShaderError;
 
 use crate::small_plan::{error, kernel, pass, raster_of, rebind, resource, small_plan};
@@ -60,6 +62,48 @@ fn uniforms_have_the_exact_size() {
         let expected = binding("choose", "probe_image", &format!("the uniform has 8 bytes, 'probe image' has {given}"));
         assert_eq!(check(&plan, &Host::default()), if fits { Ok(()) } else { Err(expected) });
     }
+}
+
+#[test]
+fn uniforms_are_parameters() {
+    for origin in [Origin::Transient, Origin::Persistent, Origin::External, Origin::Uploaded(ContentKey(7))] {
+        let foreign = error(|plan| resource(plan, "probe image").origin = origin);
+        assert_eq!(foreign, binding("choose", "probe_image", "a uniform is a parameter, 'probe image' is none"));
+    }
+    let in_raster = error(|plan| resource(plan, "camera clip").origin = Origin::Persistent);
+    assert_eq!(in_raster, binding("draw", "camera_clip", "a uniform is a parameter, 'camera clip' is none"));
+    // Only uniforms have to be: a kernel may also read a parameter as an array.
+    let mut plan = small_plan();
+    resource(&mut plan, "blocked").origin = Origin::Parameter;
+    assert_eq!(check(&plan, &Host::default()), Ok(()));
+}
+
+/// A plan that looks up depth in an array of textures.
+fn looks_up(format: TextureFormat, layers: u32) -> Plan {
+    let mut plan = Plan::new("look up");
+    let light = plan.parameter("light", 80);
+    let views = plan.parameter("views", 400);
+    let map = plan.resource("map", Shape::Texture { format, size: [16; 2], layers }, Origin::External);
+    let receivers = plan.resource("receivers", Shape::Buffer { bytes: 32 }, Origin::External);
+    let visibility = plan.buffer("visibility", 4);
+    let over = Over::Items { count: 1, work_per_item: 1 };
+    plan.compute("look up", "compares with the map", kernel("hard_shadow_map/look_up.wgsl", "look_up"), over)
+        .bind("light", light)
+        .bind("shadow_views", views)
+        .bind("depth_map", map)
+        .bind("receivers", receivers)
+        .bind("visibility", visibility);
+    plan
+}
+
+#[test]
+fn depth_is_read_as_floats_and_integers_are_not() {
+    let looks_up = |format, layers| check(&looks_up(format, layers), &Host::default());
+    for format in [TextureFormat::Depth32Float, TextureFormat::R32Float, TextureFormat::Rgba32Float] {
+        assert_eq!((looks_up(format, 1), looks_up(format, 6)), (Ok(()), Ok(())), "{format:?}");
+    }
+    let wrong = binding("look up", "depth_map", "the shader's texture type does not fit 'map'");
+    assert_eq!(looks_up(TextureFormat::R32Uint, 6), Err(wrong));
 }
 
 #[test]

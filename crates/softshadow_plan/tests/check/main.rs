@@ -6,3 +6,4 @@ mod limits;
 mod memory;
 mod order;
 mod small_plan;
+mod targets;

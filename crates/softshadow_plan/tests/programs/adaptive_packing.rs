@@ -6,7 +6,7 @@ use softshadow_plan::{
     Step, TextureFormat, Values, VertexSource,
 };
 
-use crate::walk::{text, walk, words};
+use crate::walk::{given, text, walk, words};
 
 struct AdaptivePacking {
     size: [u32; 2],
@@ -47,7 +47,7 @@ impl AdaptivePacking {
     /// What both kinds of stages share: receivers, and the integers that decide. `[largest initial count, overflows]` stay from
     /// stage to stage, so that a later stage still knows what an earlier one found.
     fn shared(&self, plan: &mut Plan) -> [ResourceId; 3] {
-        let receivers = plan.persistent("receivers", self.pixels() * 32);
+        let receivers = given(plan, "receivers", self.pixels() * 32);
         let initial = plan.persistent("initial counts", self.pixels() * u64::from(self.samples));
         let decision = plan.persistent("decision", 8);
         plan.decision = Some(decision);

@@ -1,16 +1,16 @@
 //! An animated light texture: where the light hides behind occluders does not change, so it is traced once; every frame uploads
 //! its texture and weighs the same masks with it.
 
-use softshadow_plan::{Content, Kernel, Origin, Over, Plan, Program, Shape, Stage, Step, TextureFormat, Values};
+use softshadow_plan::{Content, Kernel, Over, Plan, Program, Stage, Step, Values};
 
-use crate::walk::{text, walk, words};
+use crate::walk::{given, text, walk, words};
 
 const SIDE: u32 = 16;
 const SAMPLES: u32 = 64;
 
 struct AnimatedTexture {
     receivers: u32,
-    /// Texels of every frame, `Rgba32Float`.
+    /// Texels of every frame, four floats each: a buffer, because textures are only drawn.
     frames: Vec<Content>,
 }
 
@@ -21,7 +21,7 @@ impl AnimatedTexture {
         let over = |work_per_item| Over::Items { count: self.receivers, work_per_item };
         let masks = plan.persistent("blocked samples", each * u64::from(SAMPLES / 8));
         if index == 0 {
-            let receivers = plan.persistent("receivers", each * 32);
+            let receivers = given(&mut plan, "receivers", each * 32);
             let samples = plan.parameter("light samples", u64::from(SAMPLES) * 16);
             let trace = Kernel { file: "rays/trace.wgsl", entry: "trace" };
             plan.compute("trace", "finds the blocked samples once for all frames", trace, over(SAMPLES))
@@ -29,8 +29,7 @@ impl AnimatedTexture {
                 .bind("light_samples", samples)
                 .bind("blocked", masks);
         }
-        let shape = Shape::Texture { format: TextureFormat::Rgba32Float, size: [SIDE; 2], layers: 1 };
-        let texture = plan.resource("light texture", shape, Origin::Uploaded(self.frames[index].key));
+        let texture = plan.uploaded("light texture", &self.frames[index]);
         let frame = plan.parameter("frame", 16);
         let visibility = plan.buffer("visibility", each * 12);
         let weigh = Kernel { file: "rays/weigh.wgsl", entry: "weigh" };

@@ -2,7 +2,7 @@
 
 use softshadow_plan::{Kernel, Over, Plan, Program, Step, Values};
 
-use crate::walk::{text, walk, words};
+use crate::walk::{given, text, walk, words};
 
 struct ProgressiveRays {
     receivers: u32,
@@ -17,7 +17,7 @@ impl ProgressiveRays {
         let mut plan = Plan::new("progressive pass");
         let each = u64::from(self.receivers);
         let over = Over::Items { count: self.receivers, work_per_item: self.samples };
-        let receivers = plan.persistent("receivers", each * 32);
+        let receivers = given(&mut plan, "receivers", each * 32);
         let progress = plan.parameter("progress", 16);
         let samples = plan.parameter("light samples", u64::from(self.samples) * 16);
         let seen = plan.buffer("seen", each * 4);

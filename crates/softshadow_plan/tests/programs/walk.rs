@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use softshadow_plan::{Origin, Plan, Program, Stage, Step, Values};
+use softshadow_plan::{
+    Content, Host, Origin, Plan, PlanError, Program, ResourceId, Shape, Stage, Step, TextureFormat, Values, check,
+};
 
 /// More stages than any program here has.
 const MOST_STAGES: usize = 64;
@@ -12,6 +14,7 @@ pub(crate) fn walk(program: &dyn Program, mut device: impl FnMut(usize, &Stage) 
     let (mut stages, mut decision) = (Vec::new(), Vec::new());
     while let Step::Run(stage) = program.step(stages.len(), &decision) {
         check_values(&stage).unwrap();
+        check_resources(&stage.plan).unwrap();
         decision = device(stages.len(), &stage);
         let bytes = stage.plan.decision.map_or(0, |id| stage.plan.resources[id.index()].bytes());
         assert_eq!(decision.len() as u64 * 4, bytes, "the simulated device answers with the whole buffer");
@@ -35,6 +38,16 @@ fn check_values(Stage { plan, values }: &Stage) -> Result<(), String> {
         Some(label) => Err(format!("'{label}' is no parameter")),
         None => Ok(()),
     }
+}
+
+/// What can be said of a plan whose kernels do not exist: labels, shapes, sizes, and where contents come from.
+fn check_resources(plan: &Plan) -> Result<(), PlanError> {
+    check(&Plan { resources: plan.resources.clone(), ..Plan::new(&*plan.name) }, &Host::default())
+}
+
+/// A buffer that the caller filled. What a program does not write itself is undefined in persistent and transient ones.
+pub(crate) fn given(plan: &mut Plan, label: &str, bytes: u64) -> ResourceId {
+    plan.resource(label, Shape::Buffer { bytes }, Origin::External)
 }
 
 /// Some of the stages as text: the plan, and small values as words.
@@ -68,6 +81,15 @@ fn a_missing_or_foreign_value_is_seen() {
     assert_eq!(check([words("slope", &[1])].into()), Err("'slope' is given 4 bytes".into()));
     assert_eq!(check(Values::new()), Err("'slope' is given no value".into()));
     assert_eq!(check([words("slope", &[1, 2]), words("scale", &[1])].into()), Err("'scale' is no parameter".into()));
+}
+
+#[test]
+fn resources_that_no_host_makes_are_seen() {
+    let mut plan = Plan::new("one image");
+    let image = plan.texture("image", TextureFormat::R32Float, [8, 4], Origin::Transient);
+    assert_eq!(check_resources(&plan), Ok(()));
+    plan.resources[image.index()].origin = Origin::Uploaded(Content::new(&[0; 128]).key);
+    assert!(matches!(check_resources(&plan), Err(PlanError::Binding { binding, .. }) if binding == "image"));
 }
 
 #[test]

@@ -20,7 +20,8 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
     };
     let picture = request.wants.picture.is_some();
 
-    let candidate = &softshadow_shaders::module("ray_traced/hierarchy.wgsl").unwrap().structs["Candidate"];
+    // Four words, and a receiver with the ends of its walk for each that may need rays; `layouts.rs` compares with the kernels.
+    let list = 16 + 12 * count;
 
     add("receivers".into(), count * 32);
     if request.opens_block && camera {
@@ -55,17 +56,16 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
             add("decided samples".into(), count * 4);
             add("standard error".into(), count * 4 * u64::from(request.channels));
             for n in 0..sub_scenes.len() {
-                // A receiver and the ends of its walk for each that may need rays, and their number.
-                add(format!("candidates {n}"), count * u64::from(candidate.bytes));
-                add(format!("candidate count {n}"), 4);
+                for found in ["gathered", "candidates"] {
+                    add(format!("{found} {n}"), list);
+                }
                 add(format!("gather range {n}"), 16);
-                for round in if settings.probes > 0 { &["probe", "trace"][..] } else { &["trace"] } {
+                for round in if settings.probes > 0 { &["narrow", "probe", "trace"][..] } else { &["narrow", "trace"] }
+                {
                     add(format!("{round} range {n}"), 16);
                     add(format!("{round} dispatch {n}"), 12);
                 }
-            }
-            if !sub_scenes.is_empty() {
-                add("unfinished rays".into(), 4);
+                add(format!("trace counts {n}"), 16);
             }
             if settings.probes > 0 && !sub_scenes.is_empty() {
                 add("probe image".into(), 8);
@@ -116,20 +116,31 @@ fn bytes_are_exact_over_the_whole_grid() {
 
 #[test]
 fn a_block_is_sized_by_what_a_receiver_takes() {
-    // The front door divides its memory limit by this number: it must cover what grows with the receivers.
+    // The front door divides its memory limit by this number: it must be what grows with the receivers.
     let fixture = Fixture::new();
     for technique in techniques() {
-        for channels in [1, 3] {
-            let mut request = fixture.request(1, fixture.points());
-            request.channels = channels;
+        for (scene, channels) in [(0, 1), (0, 3), (1, 1), (1, 3), (2, 1), (2, 3)] {
+            let request = Request { channels, ..fixture.request(scene, fixture.points()) };
             let total = |count: usize| {
                 let mut request = request;
                 request.block.count = count;
                 technique.plan(&request).memory().iter().map(|(_, bytes)| bytes).sum::<u64>()
             };
+            // Bits of samples and how many are decided; both lists of each sub-scene; values and their errors.
+            let expected = match &technique {
+                Technique::RayTraced(settings) => {
+                    let words = u64::from(settings.samples.div_ceil(32));
+                    4 * words + 4 + 24 * scene as u64 + 8 * u64::from(channels)
+                }
+                _ => 4 * u64::from(channels),
+            };
+            let sub_scenes = request.scene.local.sub_scenes.len() as u64;
+            assert_eq!(sub_scenes, scene as u64);
+            assert_eq!(technique.bytes_per_receiver(u64::from(channels), sub_scenes), expected, "{technique:?}");
             // The receiver and its point take 32 bytes each.
-            let each = (total(5) - total(1)) / 4;
-            assert_eq!(each, 64 + technique.bytes_per_receiver(u64::from(channels)), "{technique:?}");
+            assert_eq!(total(5) - total(1), 4 * (64 + expected), "{technique:?} in {sub_scenes} sub-scenes");
+            let one_more = technique.bytes_per_receiver(u64::from(channels), sub_scenes + 1);
+            assert_eq!(one_more - expected, if matches!(technique, Technique::RayTraced(_)) { 24 } else { 0 });
         }
     }
 }

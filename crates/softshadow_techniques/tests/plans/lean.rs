@@ -1,6 +1,6 @@
 //! What nobody asked for costs no pass and no byte; and equal requests make equal plans.
 
-use softshadow_plan::{Plan, Work};
+use softshadow_plan::{Over, Plan, Work};
 use softshadow_scene::Camera;
 use softshadow_techniques::{HardShadowMap, RayTraced, Request, Shading, Technique};
 
@@ -10,8 +10,10 @@ fn traced(probes: u32) -> Technique {
     Technique::RayTraced(RayTraced { probes, ..RayTraced::default() })
 }
 
-/// The passes that find the receivers with anything between them and the light.
-const GATHERED: &[&str] = &["empty list 0", "gather 0", "no ray unfinished"];
+/// The passes that find the receivers with a triangle between them and the light: by boxes, then by triangles.
+const FOUND: &[&str] = &["no gathered 0", "gather 0", "size narrow 0", "no candidates 0", "narrow 0"];
+/// Those that trace, tell what was traced, and turn bits into values.
+const TRACED: &[&str] = &["size trace 0", "trace 0", "report 0", "resolve"];
 
 fn labels(plan: &Plan) -> Vec<&str> {
     plan.passes.iter().map(|p| p.label.as_str()).collect()
@@ -30,11 +32,8 @@ fn the_plainest_ray_traced_request_probes_and_shades_nothing() {
     let fixture = Fixture::new();
     let request = fixture.request(1, fixture.points());
     let plan = traced(0).plan(&request);
-    assert_eq!(
-        labels(&plan),
-        [&["place points", "open masks"], GATHERED, &["size trace 0", "trace 0", "resolve"]].concat()
-    );
-    assert_eq!(outputs(&plan), ["unfinished rays", "visibility", "receivers"]);
+    assert_eq!(labels(&plan), [&["place points", "open masks"], FOUND, TRACED].concat());
+    assert_eq!(outputs(&plan), ["trace counts 0", "visibility", "receivers"]);
     assert_eq!(plan.find("sample radiance"), None);
     // Each of these asks for one thing more, and gets it.
     let textured = traced(0).plan(&Request { channels: 3, ..request });
@@ -44,8 +43,11 @@ fn the_plainest_ray_traced_request_probes_and_shades_nothing() {
     assert_eq!(labels(&traced(0).plan(&Request { wants, ..request })).last(), Some(&"shade"));
     assert!(labels(&traced(4).plan(&request)).contains(&"choose"));
     let two = traced(0).plan(&fixture.request(2, fixture.points()));
-    let traces = |plan: &Plan| labels(plan).iter().filter(|l| l.starts_with("trace")).count();
-    assert_eq!((traces(&plan), traces(&two)), (1, 2), "one a sub-scene");
+    for word in ["gather ", "narrow ", "trace ", "report "] {
+        let count = |plan: &Plan| labels(plan).iter().filter(|l| l.starts_with(word)).count();
+        assert_eq!((count(&plan), count(&two)), (1, 2), "{word}: one a sub-scene");
+    }
+    assert_eq!(outputs(&two), ["trace counts 0", "trace counts 1", "visibility", "receivers"]);
 }
 
 #[test]
@@ -58,6 +60,9 @@ fn the_plainest_hard_shadow_has_three_passes() {
     for label in ["sampling", "light samples", "sample radiance", "materials", "color"] {
         assert_eq!(plan.find(label), None, "{label}");
     }
+    let Work::Raster(raster) = &plan.passes[1].work else { panic!("'draw depth 0 0' draws") };
+    assert_eq!(raster.kernel.fragment, Some("write_depth"), "depth is written from the distance");
+    assert!(raster.colors.is_empty() && raster.depth.is_some());
     let within = technique.plan(&Request { light: &fixture.lights[1], ..request });
     assert_eq!(rasters(&within), 6, "a light within the scene looks six ways");
 }
@@ -66,8 +71,107 @@ fn the_plainest_hard_shadow_has_three_passes() {
 fn probing_is_chosen_between_two_rounds() {
     let fixture = Fixture::new();
     let plan = traced(4).plan(&fixture.request(1, fixture.points()));
-    let rounds: &[&str] = &["size probe 0", "probe 0", "choose", "size trace 0", "trace 0", "resolve"];
-    assert_eq!(labels(&plan), [&["place points", "open masks"], GATHERED, rounds].concat());
+    let rounds: &[&str] = &["size probe 0", "probe 0", "choose"];
+    assert_eq!(labels(&plan), [&["place points", "open masks"], FOUND, rounds, TRACED].concat());
+    let two = traced(4).plan(&fixture.request(2, fixture.points()));
+    let order: Vec<&str> = labels(&two).into_iter().filter(|l| l.contains("probe") || l.contains("trace")).collect();
+    assert_eq!(&order[..4], ["size probe 0", "probe 0", "size probe 1", "probe 1"], "every sub-scene is probed first");
+    assert_eq!(order[4..], ["size trace 0", "trace 0", "size trace 1", "trace 1"]);
+}
+
+/// The label of the resource that a pass binds by this name.
+fn bound<'a>(plan: &'a Plan, pass: &str, name: &str) -> &'a str {
+    let pass = plan.passes.iter().find(|p| p.label == pass).unwrap();
+    let (_, id) = pass.bindings.iter().find(|(n, _)| *n == name).unwrap();
+    &plan.resources[id.index()].label
+}
+
+#[test]
+fn every_list_is_emptied_filled_sized_and_walked_in_its_sub_scene() {
+    let fixture = Fixture::new();
+    for probes in [0, 4] {
+        let plan = traced(probes).plan(&fixture.request(2, fixture.camera()));
+        let at = |label: &str| labels(&plan).iter().position(|l| *l == label).unwrap_or_else(|| panic!("no '{label}'"));
+        for index in 0..2 {
+            let of = |label: &str| format!("{label} {index}");
+            let is = |pass: &str, name: &str, label: &str| assert_eq!(bound(&plan, &of(pass), name), of(label));
+            for pass in ["gather", "narrow", "trace"] {
+                is(pass, "nodes", "hierarchy");
+            }
+            is("narrow", "corners", "corners");
+            is("trace", "corners", "corners");
+            is("gather", "candidates", "gathered");
+            is("size narrow", "candidates", "gathered");
+            is("narrow", "candidates", "gathered");
+            is("narrow", "narrowed", "candidates");
+            for (stage, list) in [("gather", "gathered"), ("narrow", "gathered"), ("trace", "candidates")] {
+                is(stage, "candidates", list);
+            }
+            for stage in if probes > 0 { &["narrow", "probe", "trace"][..] } else { &["narrow", "trace"] } {
+                let size = format!("size {stage}");
+                is(&size, "dispatch_size", &format!("{stage} dispatch"));
+                is(&size, "trace_range", &format!("{stage} range"));
+                is(&size, "candidates", if *stage == "narrow" { "gathered" } else { "candidates" });
+                let Work::Compute { over: Over::Indirect(groups), .. } = plan.passes[at(&of(stage))].work else {
+                    panic!("'{stage}' runs over what was counted");
+                };
+                assert_eq!(plan.resources[groups.index()].label, of(&format!("{stage} dispatch")));
+                assert!(at(&of(&size)) < at(&of(stage)));
+            }
+            // A list that is emptied after it was filled, or counted before, would lose receivers.
+            let order =
+                ["no gathered", "gather", "size narrow", "no candidates", "narrow", "size trace", "trace", "report"];
+            let places = order.map(|label| at(&of(label)));
+            assert!(places.is_sorted(), "{places:?}");
+            for (label, target) in [("no gathered", "gathered"), ("no candidates", "candidates")] {
+                let Work::Clear { target: id } = plan.passes[at(&of(label))].work else { panic!("'{label}' clears") };
+                assert_eq!(plan.resources[id.index()].label, of(target));
+            }
+            // What is told of a list is its header: how many, and how many rays were cut short.
+            let Work::Copy { source, target, bytes } = plan.passes[at(&of("report"))].work else { panic!("it copies") };
+            let ends = [source, target].map(|id| plan.resources[id.index()].label.clone());
+            assert_eq!((ends, bytes), ([of("candidates"), of("trace counts")], 16));
+        }
+    }
+}
+
+/// The words of one `Sampling`: samples, words, probes, pass, passes.
+fn sampling(technique: &Technique, request: &Request<'_>) -> Vec<u32> {
+    let value = &stage(technique, request).1["sampling"];
+    value.chunks_exact(4).take(5).map(|w| u32::from_le_bytes(w.try_into().unwrap())).collect()
+}
+
+#[test]
+fn where_nothing_is_traced_no_probe_is_asked() {
+    // Probes that no round follows would be all that is known of the masks: in an empty scene every sample counts.
+    let fixture = Fixture::new();
+    for (probes, in_scene) in [(0, 64), (8, 8), (63, 63)] {
+        for receivers in [fixture.camera(), fixture.points()] {
+            let words = |scene| sampling(&traced(probes), &fixture.request(scene, receivers));
+            assert_eq!(words(0), [64, 2, 64, 0, 1]);
+            assert_eq!(words(1), [64, 2, in_scene, 0, 1]);
+            assert_eq!(words(2), [64, 2, in_scene, 0, 1]);
+        }
+    }
+}
+
+#[test]
+fn rounds_share_the_samples() {
+    let fixture = Fixture::new();
+    let request = fixture.request(2, fixture.camera());
+    let nodes = |index: usize| request.scene.local.sub_scenes[index].nodes.len() as u32;
+    for (probes, rounds) in [(0, &[("trace", 0, 64)][..]), (8, &[("probe", 0, 8), ("trace", 8, 64)])] {
+        let (_, values) = stage(&traced(probes), &request);
+        for index in 0..2 {
+            // One invocation a candidate gathers and narrows; rays walk the samples of their round.
+            for (name, first, end) in [("gather", 0, 1), ("narrow", 0, 1)].iter().chain(rounds) {
+                let value = &values[&format!("{name} range {index}")];
+                let words: Vec<u32> =
+                    value.chunks_exact(4).map(|w| u32::from_le_bytes(w.try_into().unwrap())).collect();
+                assert_eq!(words, [*first, *end, nodes(index), 0], "{name} {index}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -108,13 +212,13 @@ fn results_leave_with_the_last_pass_alone() {
     last.wants.sample_masks = true;
     last.wants.picture = Some(Shading::Integrated);
     let plan = traced(0).plan(&last);
-    assert_eq!(outputs(&plan), ["unfinished rays", "color", "visibility", "standard error", "blocked samples"]);
+    assert_eq!(outputs(&plan), ["trace counts 0", "color", "visibility", "standard error", "blocked samples"]);
     let middle = Request { closes_light: false, closes_block: false, ..last };
-    assert_eq!(outputs(&traced(0).plan(&middle)), ["unfinished rays"]);
+    assert_eq!(outputs(&traced(0).plan(&middle)), ["trace counts 0"]);
     let other_light = Request { closes_block: false, ..last };
     assert_eq!(
         outputs(&traced(0).plan(&other_light)),
-        ["unfinished rays", "visibility", "standard error", "blocked samples"]
+        ["trace counts 0", "visibility", "standard error", "blocked samples"]
     );
 }
 
@@ -126,7 +230,9 @@ fn an_empty_scene_traces_and_draws_nothing() {
             for receivers in [fixture.camera(), fixture.points()] {
                 let plan = technique.plan(&fixture.request(scene, receivers));
                 let looks = |label: &&str| {
-                    ["trace", "probe", "gather", "size", "choose", "draw"].iter().any(|word| label.starts_with(word))
+                    ["trace", "probe", "gather", "narrow", "size", "no ", "report", "choose", "draw"]
+                        .iter()
+                        .any(|word| label.starts_with(word))
                 };
                 assert_eq!(!labels(&plan).iter().any(looks), empty, "{plan}");
             }

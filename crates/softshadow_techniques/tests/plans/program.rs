@@ -1,8 +1,10 @@
 //! The program of a whole call: every block, light and pass once, in that order, with receivers first and results last.
 
 use softshadow_plan::{Host, Program, Step, check};
-use softshadow_scene::MAX_SAMPLES;
-use softshadow_techniques::{RayTraced, Shading, StageTask, Technique, VisibilityProgram, Wants, blocks};
+use softshadow_scene::{MAX_SAMPLES, Points, SceneError};
+use softshadow_techniques::{
+    RayTraced, ReceiverSource, Shading, StageTask, Technique, TechniqueError, VisibilityProgram, Wants, blocks,
+};
 
 use crate::requests::Fixture;
 
@@ -44,13 +46,10 @@ fn every_block_light_and_pass_has_its_stage() {
 fn stages_open_and_close_their_blocks() {
     let (fixture, technique) = (Fixture::new(), passes(2));
     let program = program(&fixture, &technique);
-    let mut host = Host::default();
-    // See `limits.rs`.
-    host.limits.storage_buffers += 1;
     let mut rows = Vec::new();
     let mut index = 0;
     while let Step::Run(stage) = program.step(index, &[]) {
-        check(&stage.plan, &host).unwrap();
+        check(&stage.plan, &program.host).unwrap();
         let has = |label: &str| stage.plan.passes.iter().any(|p| p.label == label);
         let leaves = |label: &str| stage.plan.outputs.iter().any(|id| stage.plan.resources[id.index()].label == label);
         rows.push([has("draw triangle ids 0"), has("place receivers 0"), leaves("visibility"), leaves("color")]);
@@ -84,5 +83,26 @@ fn a_program_that_cannot_run_says_so_before_it_starts() {
         let technique = Technique::HardShadowMap(softshadow_techniques::HardShadowMap { resolution });
         let words = program(&fixture, &technique).check().unwrap_err().to_string();
         assert_eq!(words, format!("hard_shadow_map resolution: must lie between 16 and 16384, got {resolution}"));
+    }
+}
+
+#[test]
+fn points_beyond_float32_are_named_before_anything_runs() {
+    let fixture = Fixture::new();
+    for technique in Technique::defaults() {
+        for (far, fits) in [(1e30, true), (1e300, false)] {
+            let mut positions = vec![[0.0, 0.0, 0.1]; 9];
+            positions[7] = [0.0, far, 0.0];
+            let points = Points::new(positions, None).unwrap();
+            let program = VisibilityProgram {
+                receivers: ReceiverSource::Points(&points),
+                // The far point is in the last block: every block's points are looked at.
+                blocks: blocks(9, 1, 0, 2),
+                ..program(&fixture, &technique)
+            };
+            let what = "points, relative to the scene in float32,".to_owned();
+            let expected = Err(TechniqueError::Scene(SceneError::NotFinite { what, index: 7 }));
+            assert_eq!(program.check(), if fits { Ok(()) } else { expected }, "{}", technique.name());
+        }
     }
 }
