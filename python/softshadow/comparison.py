@@ -115,7 +115,7 @@ _COLUMNS: dict[str, tuple[str, ...]] = {
     "bias": ("penumbra", "bias"),
     "leaks": ("leak_fraction",),
     "false shadows": ("false_shadow_fraction",),
-    "gross": ("gross_errors",),
+    "gross": ("gross_count",),
 }
 
 

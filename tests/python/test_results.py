@@ -142,11 +142,13 @@ def test_visible_samples_are_those_of_light_points(scene):
     technique = ss.RayTraced(samples=40)
     result = visibility(scene, light, camera=camera, technique=technique, sample_masks=True, receivers=True)
     assert result.visible_samples.shape == (12, 16, 40)
-    np.testing.assert_allclose(result.visible_samples.mean(axis=2), result.values, atol=1e-6)
+    shares = result.visible_samples.mean(axis=2)
+    np.testing.assert_allclose(shares[result.valid], result.values[result.valid], atol=1e-6)
+    assert not result.visible_samples[~result.valid].any()
     # The card lies at y = 1 and hides a sample where the ray crosses it.
     samples = ss.light_points(light, 40, scene=scene).positions.reshape(-1, 3)
-    on_floor = (result.positions[..., 1] < 0.5)[..., None]
-    origins = result.positions[:, :, None]
+    origins = np.where(result.valid[..., None], result.positions, 9)[:, :, None]
+    on_floor = origins[..., 1] < 0.5
     across = origins + (samples - origins) * ((1 - origins[..., 1]) / (samples[:, 1] - origins[..., 1]))[..., None]
     inside = np.abs(across[..., [0, 2]]).max(axis=-1)
     clear = np.abs(inside - 0.5) > 1e-4

@@ -1,7 +1,7 @@
 //! `compare`: what each technique costs and how far it is from a reference, on the same receivers.
 
 use serde::Serialize;
-use softshadow_measure::metrics;
+use softshadow_measure::metrics::{self, ErrorReport};
 use softshadow_scene::{Light, Receivers, Scene};
 use softshadow_techniques::Technique;
 
@@ -33,37 +33,9 @@ pub struct ComparisonRow {
     pub range_ms: [f64; 2],
     /// Bytes on the device.
     pub bytes: u64,
-    /// Errors over the penumbra (0.002 < V < 0.998 in the reference); none where there is no penumbra.
-    pub penumbra: Option<RegionErrors>,
-    /// Errors over all valid receivers.
-    pub overall: Option<RegionErrors>,
-    /// Share of the true umbra that is reported brighter than 0.05.
-    pub leak_fraction: Option<f64>,
-    /// Share of what is truly lit that is reported darker than 0.95.
-    pub false_shadow_fraction: Option<f64>,
-    /// Receivers that are off by more than 0.25.
-    pub gross_errors: usize,
-    /// The largest connected group of them, for images.
-    pub largest_gross_component: Option<usize>,
-}
-
-/// Errors over one set of receivers.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct RegionErrors {
-    /// Receivers in the set.
-    pub count: usize,
-    /// Root mean square error.
-    pub rmse: f64,
-    /// Mean absolute error.
-    pub mae: f64,
-    /// 95th percentile of the absolute error.
-    pub p95: f64,
-    /// 99th percentile of the absolute error.
-    pub p99: f64,
-    /// Largest absolute error.
-    pub max: f64,
-    /// Mean signed error: above 0 is too bright.
-    pub bias: f64,
+    /// How far it is from the reference: over the penumbra, over everything, and what is confused.
+    #[serde(flatten)]
+    pub errors: ErrorReport,
 }
 
 /// Compares techniques with a reference; each runs once to warm up and `repeats` times, taking turns.
@@ -113,32 +85,18 @@ pub fn compare(
         };
         let report = metrics::compare(&result.values, &image).map_err(|error| Error::Measure(error.to_string()))?;
         reference_standard_error = report.penumbra_reference_se;
-        rows.push(row(technique, result, times, &report));
+        rows.push(row(technique, result, times, report));
     }
     Ok(Comparison { reference: truth.info, reference_standard_error, rows })
 }
 
-fn row(technique: &Technique, result: &Visibility, times: &mut [f64], report: &metrics::ErrorReport) -> ComparisonRow {
+fn row(technique: &Technique, result: &Visibility, times: &mut [f64], errors: ErrorReport) -> ComparisonRow {
     times.sort_by(f64::total_cmp);
-    let errors = |region: &metrics::RegionError| RegionErrors {
-        count: region.count,
-        rmse: region.rmse,
-        mae: region.mae,
-        p95: region.p95,
-        p99: region.p99,
-        max: region.max,
-        bias: region.bias,
-    };
     ComparisonRow {
         technique: technique.clone(),
         median_ms: times[times.len() / 2],
         range_ms: [times[0], times[times.len() - 1]],
         bytes: result.info.bytes.iter().map(|(_, bytes)| bytes).sum(),
-        penumbra: report.penumbra.as_ref().map(errors),
-        overall: report.overall.as_ref().map(errors),
-        leak_fraction: report.leak_fraction,
-        false_shadow_fraction: report.false_shadow_fraction,
-        gross_errors: report.gross_count,
-        largest_gross_component: report.largest_gross_component,
+        errors,
     }
 }

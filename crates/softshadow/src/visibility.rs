@@ -209,7 +209,6 @@ pub(crate) fn run(
 const RAYS_PER_BLOCK: u64 = 1 << 27;
 
 /// How many receivers fit the memory limit and the device's bindings.
-#[expect(clippy::too_many_arguments, reason = "everything that takes memory")]
 fn receivers_per_block(
     technique: &Technique,
     options: &Options,

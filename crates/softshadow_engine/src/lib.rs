@@ -3,12 +3,15 @@
 //! The engine knows no technique: it looks kernels up by name and does what the passes say, in order.
 
 mod adapter;
+mod encode;
 mod error;
 mod pipelines;
 mod pool;
 mod run;
+mod schedule;
 mod timing;
 
 pub use adapter::{AdapterChoice, AdapterInfo, DeviceKind, adapters};
 pub use error::EngineError;
-pub use run::{Engine, PassTime, RunReport, StageReport, Timing};
+pub use run::{Engine, RunReport, StageReport};
+pub use timing::{PassTime, Timing};

@@ -5,26 +5,18 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use softshadow_plan::{
-    Content, ContentKey, Count, Host, Origin, Over, Pass, Plan, Program, Raster, ResourceId, SLICE, Stage, Step,
-    VertexSource, Work, check,
-};
+use softshadow_plan::{Content, ContentKey, Host, Origin, Plan, Program, ResourceId, SLICE, Stage, Step, check};
 
 use crate::adapter::{AdapterChoice, AdapterInfo, DeviceKind, Opened, open};
+use crate::encode::{Encoding, SLICE_STRIDE};
 use crate::error::EngineError;
 use crate::pipelines::Pipelines;
 use crate::pool::{Pool, Slot};
-use crate::timing::Timestamps;
-
-/// Rays or similar steps of one submission: below a second on a slow software driver, so that watchdogs stay quiet and a
-/// caller can stop in between.
-const WORK_PER_SUBMISSION: u64 = 1 << 25;
+use crate::schedule::{Dispatch, schedule};
+use crate::timing::{PassTime, Timestamps, Timing, add_times};
 
 /// How long one submission may take.
 const TIMEOUT_SECONDS: u64 = 300;
-
-/// Distance of two slices in their buffer; at least the uniform offset alignment of every device.
-const SLICE_STRIDE: u64 = 256;
 
 /// An open device and everything that is kept on it between runs. Runs take turns.
 pub struct Engine {
@@ -36,25 +28,6 @@ pub struct Engine {
 struct State {
     pipelines: Pipelines,
     pool: Pool,
-}
-
-/// Time of one pass by the device's clock.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PassTime {
-    /// The pass.
-    pub label: String,
-    /// Milliseconds.
-    pub ms: f64,
-}
-
-/// How passes are timed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Timing {
-    /// By the device's clock, where it has one that can be trusted; costs nothing.
-    #[default]
-    Device,
-    /// By the wall clock, each pass in a submission of its own; the whole takes longer.
-    EachPass,
 }
 
 /// What one stage produced.
@@ -79,14 +52,6 @@ pub struct RunReport {
     pub submissions: usize,
     /// Stages.
     pub stages: usize,
-}
-
-/// A dispatch or another step, with the part of the items that it covers.
-struct Dispatch<'a> {
-    pass: &'a Pass,
-    first: u32,
-    count: u32,
-    slice: usize,
 }
 
 impl Engine {
@@ -237,8 +202,10 @@ impl Engine {
             // Software drivers stamp a pass before its work is done: their passes are timed one submission at a time.
             let has_clock = timing == Timing::Device && self.opened.info.device_type == DeviceKind::Gpu;
             let mut timestamps = if has_clock { Timestamps::new(device, dispatches.len()) } else { None };
+            let mut encoding =
+                Encoding { device, pipelines: &mut state.pipelines, plan, slots: &slots, slices: &slices };
             for dispatch in dispatches {
-                self.encode(state, plan, &slots, &slices, dispatch, &mut encoder, &mut timestamps)?;
+                encoding.dispatch(dispatch, &mut encoder, &mut timestamps)?;
             }
             if number == last {
                 readback = self.copy_outputs(plan, &slots, &outputs, &mut encoder);
@@ -284,154 +251,6 @@ impl Engine {
         });
         self.opened.queue.write_buffer(&buffer, 0, &bytes);
         buffer
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "one step of the interpreter: everything it may touch, in one place")]
-    fn encode(
-        &self,
-        state: &mut State,
-        plan: &Plan,
-        slots: &[Slot],
-        slices: &wgpu::Buffer,
-        dispatch: &Dispatch<'_>,
-        encoder: &mut wgpu::CommandEncoder,
-        timestamps: &mut Option<Timestamps>,
-    ) -> Result<(), EngineError> {
-        let device = &self.opened.device;
-        let pass = dispatch.pass;
-        let buffer = |id: ResourceId| match &slots[id.index()] {
-            Slot::Buffer(buffer) => Ok(buffer),
-            Slot::Texture(_) => {
-                let label = &plan.resources[id.index()].label;
-                Err(EngineError::contents(&plan.name, label, "is a texture where a buffer is needed"))
-            }
-        };
-        match &pass.work {
-            Work::Clear { target } => encoder.clear_buffer(buffer(*target)?, 0, None),
-            Work::Copy { source, target, bytes } => {
-                encoder.copy_buffer_to_buffer(buffer(*source)?, 0, buffer(*target)?, 0, *bytes);
-            }
-            Work::Compute { kernel, over } => {
-                let pipeline = state.pipelines.compute(device, *kernel)?;
-                let module = softshadow_shaders::module(kernel.file)
-                    .map_err(|error| softshadow_plan::PlanError::Shader { pass: pass.label.clone(), error })?;
-                let entry = &module.entry_points[kernel.entry];
-                let group = bind_group(
-                    device,
-                    plan,
-                    pass,
-                    slots,
-                    &pipeline.get_bind_group_layout(0),
-                    &entry.bindings,
-                    Some((slices, dispatch.slice)),
-                );
-                let timestamp_writes = timestamps.as_mut().map(|t| {
-                    let (query_set, begin, end) = t.next(&pass.label);
-                    wgpu::ComputePassTimestampWrites {
-                        query_set,
-                        beginning_of_pass_write_index: Some(begin),
-                        end_of_pass_write_index: Some(end),
-                    }
-                });
-                let mut compute = encoder
-                    .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pass.label), timestamp_writes });
-                compute.set_pipeline(&pipeline);
-                compute.set_bind_group(0, &group, &[]);
-                match over {
-                    Over::Items { .. } => {
-                        compute.dispatch_workgroups(dispatch.count.div_ceil(entry.workgroup_size[0]), 1, 1);
-                    }
-                    Over::Indirect(counts) => compute.dispatch_workgroups_indirect(buffer(*counts)?, 0),
-                }
-            }
-            Work::Raster(raster) => self.encode_raster(state, plan, slots, pass, raster, encoder, timestamps)?,
-        }
-        Ok(())
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "as `encode`, whose raster arm this is")]
-    fn encode_raster(
-        &self,
-        state: &mut State,
-        plan: &Plan,
-        slots: &[Slot],
-        pass: &Pass,
-        raster: &Raster,
-        encoder: &mut wgpu::CommandEncoder,
-        timestamps: &mut Option<Timestamps>,
-    ) -> Result<(), EngineError> {
-        let device = &self.opened.device;
-        let corners = matches!(raster.vertices, VertexSource::Corners { .. });
-        let pipeline = state.pipelines.raster(device, plan, raster, corners)?;
-        let bindings = raster_bindings(pass, raster)?;
-        let group = (!bindings.is_empty())
-            .then(|| bind_group(device, plan, pass, slots, &pipeline.get_bind_group_layout(0), &bindings, None));
-        let view = |id: ResourceId, layer: u32| match &slots[id.index()] {
-            Slot::Texture(texture) => Ok(texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: layer,
-                array_layer_count: Some(1),
-                ..Default::default()
-            })),
-            Slot::Buffer(_) => {
-                let label = &plan.resources[id.index()].label;
-                Err(EngineError::contents(&plan.name, label, "is a buffer where a texture is needed"))
-            }
-        };
-        let color_views = raster.colors.iter().map(|c| view(c.texture, c.layer)).collect::<Result<Vec<_>, _>>()?;
-        let depth_view = raster.depth.as_ref().map(|d| view(d.texture, d.layer)).transpose()?;
-        let attachments: Vec<_> = raster
-            .colors
-            .iter()
-            .zip(&color_views)
-            .map(|(target, view)| {
-                let load = target
-                    .clear
-                    .map_or(wgpu::LoadOp::Load, |v| wgpu::LoadOp::Clear(wgpu::Color { r: v, g: v, b: v, a: v }));
-                let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
-                Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
-            })
-            .collect();
-        let depth = raster.depth.as_ref().zip(depth_view.as_ref()).map(|(target, view)| {
-            let load = target.clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
-            let depth_ops = Some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
-            wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
-        });
-        let timestamp_writes = timestamps.as_mut().map(|t| {
-            let (query_set, begin, end) = t.next(&pass.label);
-            wgpu::RenderPassTimestampWrites {
-                query_set,
-                beginning_of_pass_write_index: Some(begin),
-                end_of_pass_write_index: Some(end),
-            }
-        });
-        let mut draw = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(&pass.label),
-            color_attachments: &attachments,
-            depth_stencil_attachment: depth,
-            timestamp_writes,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        draw.set_pipeline(&pipeline);
-        if let Some(group) = &group {
-            draw.set_bind_group(0, group, &[]);
-        }
-        match raster.vertices {
-            VertexSource::Corners { buffer, count } => {
-                if let Slot::Buffer(buffer) = &slots[buffer.index()] {
-                    draw.set_vertex_buffer(0, buffer.slice(..));
-                    draw.draw(0..count, 0..1);
-                }
-            }
-            VertexSource::Generated(Count::Fixed(count)) => draw.draw(0..count, 0..1),
-            VertexSource::Generated(Count::Indirect(counts)) => {
-                if let Slot::Buffer(counts) = &slots[counts.index()] {
-                    draw.draw_indirect(counts, 0);
-                }
-            }
-        }
-        Ok(())
     }
 
     fn copy_outputs(
@@ -481,113 +300,6 @@ impl Engine {
             Ok(bytes)
         };
         buffers.iter().map(read).collect()
-    }
-}
-
-/// The bindings of both entry points of a raster pass, each once.
-fn raster_bindings(pass: &Pass, raster: &Raster) -> Result<Vec<softshadow_shaders::Binding>, EngineError> {
-    let module = softshadow_shaders::module(raster.kernel.file)
-        .map_err(|error| softshadow_plan::PlanError::Shader { pass: pass.label.clone(), error })?;
-    let mut bindings = module.entry_points[raster.kernel.vertex].bindings.clone();
-    for entry in raster.kernel.fragment.iter().map(|name| &module.entry_points[*name]) {
-        for binding in &entry.bindings {
-            if !bindings.iter().any(|known| known.name == binding.name) {
-                bindings.push(binding.clone());
-            }
-        }
-    }
-    Ok(bindings)
-}
-
-fn bind_group(
-    device: &wgpu::Device,
-    plan: &Plan,
-    pass: &Pass,
-    slots: &[Slot],
-    layout: &wgpu::BindGroupLayout,
-    bindings: &[softshadow_shaders::Binding],
-    slice: Option<(&wgpu::Buffer, usize)>,
-) -> wgpu::BindGroup {
-    let texture_view = |texture: &wgpu::Texture, array: bool| {
-        let dimension = if array { wgpu::TextureViewDimension::D2Array } else { wgpu::TextureViewDimension::D2 };
-        texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() })
-    };
-    let bound = |name: &str| pass.bindings.iter().find(|(n, _)| *n == name).map(|(_, id)| &slots[id.index()]);
-    // Views have to outlive the entries that refer to them.
-    let views: Vec<Option<wgpu::TextureView>> = bindings
-        .iter()
-        .map(|binding| match (bound(&binding.name), binding.kind) {
-            (Some(Slot::Texture(texture)), softshadow_shaders::BindingKind::Texture(shape)) => {
-                Some(texture_view(texture, shape.array))
-            }
-            _ => None,
-        })
-        .collect();
-    let mut entries = Vec::with_capacity(bindings.len());
-    for (binding, view) in bindings.iter().zip(&views) {
-        let resource = match (bound(&binding.name), slice, view) {
-            (_, _, Some(view)) => wgpu::BindingResource::TextureView(view),
-            (Some(Slot::Buffer(buffer)), _, _) => buffer.as_entire_binding(),
-            (None, Some((buffer, index)), _) if binding.name == SLICE => {
-                let size = std::num::NonZeroU64::new(8);
-                wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: index as u64 * SLICE_STRIDE, size })
-            }
-            // `check` refuses a plan with a missing binding; leaving it out makes the driver say so too.
-            _ => continue,
-        };
-        entries.push(wgpu::BindGroupEntry { binding: binding.binding, resource });
-    }
-    let label = format!("{}: {}", plan.name, pass.label);
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(&label), layout, entries: &entries })
-}
-
-/// Passes as dispatches, grouped into submissions of bounded work.
-fn schedule<'a>(plan: &'a Plan, host: &Host, timing: Timing) -> Vec<Vec<Dispatch<'a>>> {
-    let mut submissions: Vec<Vec<Dispatch<'a>>> = vec![Vec::new()];
-    let mut work = 0u64;
-    let mut slice = 0;
-    for pass in &plan.passes {
-        let Work::Compute { kernel, over: Over::Items { count, work_per_item } } = &pass.work else {
-            submissions.last_mut().expect("never empty").push(Dispatch { pass, first: 0, count: 0, slice });
-            slice += 1;
-            continue;
-        };
-        let group = softshadow_shaders::module(kernel.file)
-            .ok()
-            .and_then(|m| m.entry_points.get(kernel.entry))
-            .map_or(1, |e| e.workgroup_size[0]);
-        let most = u64::from(host.limits.groups) * u64::from(group);
-        let cost = u64::from((*work_per_item).max(1));
-        let mut first = 0u64;
-        while first < u64::from(*count) {
-            let room = (WORK_PER_SUBMISSION.saturating_sub(work) / cost).max(u64::from(group));
-            let part = (u64::from(*count) - first).min(most).min(room);
-            let dispatch = Dispatch { pass, first: first as u32, count: part as u32, slice };
-            submissions.last_mut().expect("never empty").push(dispatch);
-            slice += 1;
-            first += part;
-            work += part * cost;
-            if work >= WORK_PER_SUBMISSION && first < u64::from(*count) {
-                submissions.push(Vec::new());
-                work = 0;
-            }
-        }
-    }
-    if timing == Timing::EachPass {
-        submissions = submissions.into_iter().flatten().map(|dispatch| vec![dispatch]).collect();
-        if submissions.is_empty() {
-            submissions.push(Vec::new());
-        }
-    }
-    submissions
-}
-
-fn add_times(total: &mut Vec<PassTime>, times: Vec<PassTime>) {
-    for time in times {
-        match total.iter_mut().find(|t| t.label == time.label) {
-            Some(known) => known.ms += time.ms,
-            None => total.push(time),
-        }
     }
 }
 

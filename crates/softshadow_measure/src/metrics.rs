@@ -3,6 +3,8 @@
 //! Averages hide what the eye and the physicist see, so the report also says where the error sits (penumbra), which way it
 //! leans (bias), whether light leaks into the umbra or shadow on to lit ground, and how large the gross defects are.
 
+use serde::Serialize;
+
 use std::collections::VecDeque;
 use std::fmt;
 
@@ -18,7 +20,7 @@ pub const CONFUSION_LIMIT: f32 = 0.05;
 pub const GROSS_ERROR: f64 = 0.25;
 
 /// Errors `estimate − reference` over one set of pixels.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RegionError {
     /// Pixels in the set, at least 1.
     pub count: usize,
@@ -58,7 +60,7 @@ impl RegionError {
 }
 
 /// Everything to say about one image. Sets without pixels are `None`, so that nothing measured never reads as no error.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ErrorReport {
     /// All valid pixels.
     pub overall: Option<RegionError>,

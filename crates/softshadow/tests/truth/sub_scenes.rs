@@ -15,9 +15,7 @@ fn plate(name: &str, [low, high]: [[f64; 2]; 2], z: f64, [columns, rows]: [u32; 
     let at = |i: u32, j: u32| j * (columns + 1) + i;
     let triangles = (0..rows)
         .flat_map(|j| (0..columns).map(move |i| (i, j)))
-        .flat_map(|(i, j)| {
-            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
-        })
+        .flat_map(|(i, j)| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]])
         .collect();
     Mesh::new(name, vertices, triangles, Material::default()).unwrap()
 }
@@ -34,17 +32,15 @@ const RIGHT: [[f64; 2]; 2] = [[0.35, -0.2], [0.8, 0.5]];
 
 #[test]
 fn a_scene_over_the_binding_limit_casts_the_same_shadow() {
-    let positions: Vec<Point> = (0..2000)
-        .map(|i| [f64::from(i % 50) / 25.0 - 0.98, f64::from(i / 50) / 20.0 - 0.975, 0.0])
-        .collect();
+    let positions: Vec<Point> =
+        (0..2000).map(|i| [f64::from(i % 50) / 25.0 - 0.98, f64::from(i / 50) / 20.0 - 0.975, 0.0]).collect();
     let receivers = surface_points(positions, [0.0, 0.0, 1.0]);
     let lights = [lamp(rectangle(0.6, 0.6), [0.0, 0.0, 2.0])];
     // 128 MiB hold the nodes of 2,097,152 triangles.
     let fine = hall([1100, 1000], &[LEFT, RIGHT]);
     let coarse = hall([1, 1], &[LEFT, RIGHT]);
     for technique in [ray_traced(64), hard_shadow_map(512)] {
-        let (cut, whole) =
-            (see(&fine, &lights, &receivers, &technique), see(&coarse, &lights, &receivers, &technique));
+        let (cut, whole) = (see(&fine, &lights, &receivers, &technique), see(&coarse, &lights, &receivers, &technique));
         assert!(cut.info.plan.contains("corners 1"), "the fine scene needs a second binding: {}", cut.info.plan);
         assert!(!whole.info.plan.contains("corners 1"));
         assert_eq!(bits(&cut), bits(&whole), "{}", technique.name());

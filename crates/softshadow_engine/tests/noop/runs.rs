@@ -154,14 +154,6 @@ fn a_parameter_and_a_persistent_of_one_label_and_size_are_two_buffers() {
 }
 
 #[test]
-fn copies_and_clears_are_what_this_backend_does() {
-    // Otherwise zeros of the tests above would say nothing.
-    let mut plan = Plan::new("copy");
-    let ones = plan.uploaded("ones", &softshadow_plan::Content::new(&[0xff; 16]));
-    assert_eq!(plan.resources[ones.index()].bytes(), 16);
-}
-
-#[test]
 fn runs_of_several_threads_take_turns() {
     let engine = engine();
     std::thread::scope(|scope| {
