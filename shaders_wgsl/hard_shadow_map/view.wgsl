@@ -11,7 +11,3 @@ struct ShadowView {
     forward: vec3<f32>,
     texel: f32,         // half the width of a texel at distance 1 (perspective), or everywhere (parallel)
 }
-
-fn shadow_view_depth(view: ShadowView, p: vec3<f32>) -> f32 {
-    return dot(view.forward, p - view.eye);
-}

@@ -111,11 +111,15 @@ impl Engine {
                 // Whatever a failed stage left behind is not trusted again.
                 state.pool.clear();
             }
-            let outputs = result?;
-            decision = stage.plan.decision.map_or_else(Vec::new, |id| {
-                let bytes = outputs.get(&stage.plan.resources[id.index()].label).map_or(&[][..], Vec::as_slice);
-                bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect()
-            });
+            let mut outputs = result?;
+            let label = |id: &ResourceId| stage.plan.resources[id.index()].label.as_str();
+            decision = stage
+                .plan
+                .decision
+                .as_ref()
+                .and_then(|id| outputs.get(label(id)))
+                .map_or_else(Vec::new, |bytes| bytes.chunks_exact(4).map(bytemuck::pod_read_unaligned).collect());
+            outputs.retain(|name, _| stage.plan.outputs.iter().any(|id| label(id) == name));
             report.wall_ms = started.elapsed().as_secs_f64() * 1e3;
             report.stages += 1;
             if !on_stage(Some(StageReport { index, outputs })) {

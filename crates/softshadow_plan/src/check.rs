@@ -9,6 +9,9 @@ use crate::pass::{Blend, Count, Over, Pass, Raster, VertexSource, Work};
 use crate::plan::{Plan, SLICE};
 use crate::resource::{Origin, Resource, ResourceId, Shape, TextureFormat};
 
+/// Bytes of one corner of [`VertexSource::Corners`].
+const CORNER_BYTES: u64 = 16;
+
 /// A plan that cannot run, with the pass, the binding or the resource that is at fault.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -90,7 +93,7 @@ pub fn check(plan: &Plan, host: &Host) -> Result<(), PlanError> {
     }
     for output in plan.outputs.iter().chain(&plan.decision) {
         require_written("output", plan, *output, &written)?;
-        require_buffer("output", plan, *output)?;
+        require_buffer("output", plan, *output, 4)?;
     }
     Ok(())
 }
@@ -123,13 +126,13 @@ fn check_pass(plan: &Plan, pass: &Pass, host: &Host, written: &mut BTreeSet<Reso
     let read = |id: ResourceId, written: &BTreeSet<ResourceId>| require_written(&pass.label, plan, id, written);
     match &pass.work {
         Work::Clear { target } => {
-            require_writable(&pass.label, plan, *target)?;
+            require_buffer(&pass.label, plan, *target, 4)?;
             written.insert(*target);
         }
         Work::Copy { source, target, bytes } => {
             read(*source, written)?;
-            require_buffer(&pass.label, plan, *source)?;
-            require_writable(&pass.label, plan, *target)?;
+            require_buffer(&pass.label, plan, *source, 4)?;
+            require_buffer(&pass.label, plan, *target, 4)?;
             if source == target || !bytes.is_multiple_of(4) {
                 let problem = "copies go from one buffer to another, in multiples of four bytes".to_owned();
                 return Err(PlanError::Binding { pass: pass.label.clone(), binding: "copy".into(), problem });
@@ -146,6 +149,7 @@ fn check_pass(plan: &Plan, pass: &Pass, host: &Host, written: &mut BTreeSet<Reso
             let entry = entry_point(pass, kernel.file, kernel.entry, Stage::Compute)?;
             if let Over::Indirect(buffer) = over {
                 read(*buffer, written)?;
+                require_buffer(&pass.label, plan, *buffer, 12)?;
             }
             let takes_slice = entry.bindings.iter().any(|b| b.name == SLICE);
             if matches!(over, Over::Items { .. }) != takes_slice {
@@ -178,8 +182,21 @@ fn check_raster(
     if raster.colors.iter().any(|c| c.blend != Blend::Replace) && !host.features.float32_blendable {
         return Err(missing("float32-blendable"));
     }
-    if let VertexSource::Corners { buffer, .. } | VertexSource::Generated(Count::Indirect(buffer)) = raster.vertices {
-        require_written(&pass.label, plan, buffer, written)?;
+    match raster.vertices {
+        VertexSource::Corners { buffer, count } => {
+            require_written(&pass.label, plan, buffer, written)?;
+            let resource = &plan.resources[buffer.index()];
+            let needed = u64::from(count) * CORNER_BYTES;
+            if !matches!(resource.shape, Shape::Buffer { bytes } if bytes >= needed.max(CORNER_BYTES)) {
+                let problem = format!("must be a buffer of at least {needed} bytes of corners");
+                return Err(PlanError::Binding { pass: pass.label.clone(), binding: resource.label.clone(), problem });
+            }
+        }
+        VertexSource::Generated(Count::Indirect(buffer)) => {
+            require_written(&pass.label, plan, buffer, written)?;
+            require_buffer(&pass.label, plan, buffer, 16)?;
+        }
+        VertexSource::Generated(Count::Fixed(_)) => {}
     }
     let vertex = entry_point(pass, raster.kernel.file, raster.kernel.vertex, Stage::Vertex)?;
     let mut bindings: Vec<Binding> = vertex.bindings.clone();
@@ -303,23 +320,18 @@ fn entry_point(pass: &Pass, file: &str, entry: &str, stage: Stage) -> Result<&'s
     })
 }
 
-fn require_buffer(pass: &str, plan: &Plan, id: ResourceId) -> Result<(), PlanError> {
+/// A buffer that passes write: it can be read back, copied, and used as a count.
+fn require_buffer(pass: &str, plan: &Plan, id: ResourceId, at_least: u64) -> Result<(), PlanError> {
     let resource = &plan.resources[id.index()];
-    if matches!(resource.shape, Shape::Buffer { .. }) && resource.origin != Origin::Parameter {
-        return Ok(());
+    let fail =
+        |problem: String| Err(PlanError::Binding { pass: pass.to_owned(), binding: resource.label.clone(), problem });
+    match (resource.shape, resource.origin) {
+        (Shape::Texture { .. }, _) => fail("is a texture where a buffer is needed".into()),
+        (_, Origin::Uploaded(_)) => fail("is uploaded and must not be written or read back".into()),
+        (_, Origin::Parameter) => fail("is a parameter and must not be written or read back".into()),
+        (Shape::Buffer { bytes }, _) if bytes < at_least => fail(format!("has {bytes} bytes, {at_least} are needed")),
+        _ => Ok(()),
     }
-    let problem = "only buffers that the device keeps can be copied or read back".to_owned();
-    Err(PlanError::Binding { pass: pass.to_owned(), binding: resource.label.clone(), problem })
-}
-
-fn require_writable(pass: &str, plan: &Plan, id: ResourceId) -> Result<(), PlanError> {
-    require_buffer(pass, plan, id)?;
-    let resource = &plan.resources[id.index()];
-    if !matches!(resource.origin, Origin::Uploaded(_)) {
-        return Ok(());
-    }
-    let problem = "is uploaded and must not be written".to_owned();
-    Err(PlanError::Binding { pass: pass.to_owned(), binding: resource.label.clone(), problem })
 }
 
 fn require_written(pass: &str, plan: &Plan, id: ResourceId, written: &BTreeSet<ResourceId>) -> Result<(), PlanError> {
