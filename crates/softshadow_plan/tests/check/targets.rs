@@ -6,8 +6,9 @@ use softshadow_plan::{
 
 use crate::small_plan::{PIXELS, error, pass, raster_of, resource, small_plan};
 
-const KEPT: &str = "only buffers that the device keeps can be copied or read back";
-const UPLOADED: &str = "is uploaded and must not be written";
+const TEXTURE: &str = "is a texture where a buffer is needed";
+const PARAMETER: &str = "is a parameter and must not be written or read back";
+const UPLOADED: &str = "is uploaded and must not be written or read back";
 const COPIES: &str = "copies go from one buffer to another, in multiples of four bytes";
 const FORMATS: &str = "depth goes to a depth texture, colour to another";
 
@@ -32,7 +33,7 @@ fn only_buffers_that_passes_write_are_cleared() {
     for label in ["decided", "blocked", "kept"] {
         assert_eq!(clear(label), Ok(()), "{label}");
     }
-    for (label, problem) in [("triangle ids", KEPT), ("sampling", KEPT), ("corners", UPLOADED)] {
+    for (label, problem) in [("triangle ids", TEXTURE), ("sampling", PARAMETER), ("corners", UPLOADED)] {
         assert_eq!(clear(label), Err(binding("reset", label, problem)));
     }
 }
@@ -49,10 +50,11 @@ fn copies_go_between_two_buffers_in_whole_words() {
         assert_eq!(copy(source, target, bytes), Ok(()), "{source} to {target}");
     }
     for (source, target, named, problem) in [
-        ("triangle ids", "kept", "triangle ids", KEPT),
-        ("sampling", "kept", "sampling", KEPT),
-        ("decided", "triangle ids", "triangle ids", KEPT),
-        ("decided", "sampling", "sampling", KEPT),
+        ("triangle ids", "kept", "triangle ids", TEXTURE),
+        ("sampling", "kept", "sampling", PARAMETER),
+        ("corners", "kept", "corners", UPLOADED),
+        ("decided", "triangle ids", "triangle ids", TEXTURE),
+        ("decided", "sampling", "sampling", PARAMETER),
         ("decided", "corners", "corners", UPLOADED),
         ("decided", "decided", "copy", COPIES),
     ] {
@@ -70,8 +72,10 @@ fn only_buffers_of_the_device_are_handed_out() {
     for label in ["kept", "blocked", "receivers"] {
         assert_eq!((output(label), decision(label)), (Ok(()), Ok(())), "{label}");
     }
-    for label in ["triangle ids", "depth", "sampling"] {
-        let refused = Err(binding("output", label, KEPT));
+    for (label, problem) in
+        [("triangle ids", TEXTURE), ("depth", TEXTURE), ("sampling", PARAMETER), ("corners", UPLOADED)]
+    {
+        let refused = Err(binding("output", label, problem));
         assert_eq!((output(label), decision(label)), (refused.clone(), refused));
     }
 }
@@ -132,4 +136,28 @@ fn a_decision_may_also_be_an_output() {
         plan.decision = Some(late);
     });
     assert_eq!(unwritten, PlanError::ReadBeforeWrite { pass: "output".into(), resource: "late".into() });
+}
+
+#[test]
+fn counts_and_corners_fit_their_buffers() {
+    let indirect = |bytes: u64| {
+        after(|plan| {
+            let counts = plan.persistent("counts", bytes);
+            raster_of(plan).vertices =
+                softshadow_plan::VertexSource::Generated(softshadow_plan::Count::Indirect(counts));
+        })
+    };
+    assert_eq!(indirect(16), Ok(()));
+    assert!(matches!(indirect(12), Err(PlanError::Binding { binding, .. }) if binding == "counts"));
+    let corners = |bytes: u64, count: u32| {
+        after(|plan| {
+            let buffer = plan.persistent("other corners", bytes);
+            raster_of(plan).vertices = softshadow_plan::VertexSource::Corners { buffer, count };
+        })
+    };
+    assert_eq!(corners(96, 6), Ok(()));
+    for (bytes, count) in [(80, 6), (0, 0)] {
+        let refused = corners(bytes, count);
+        assert!(matches!(refused, Err(PlanError::Binding { binding, .. }) if binding == "other corners"), "{bytes}");
+    }
 }
