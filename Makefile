@@ -15,12 +15,12 @@ help:
 	@echo "make lint      formatting, clippy, ruff, mypy, stubs"
 	@echo "make evidence  heavy checks against other renderers, with meshes; writes EVIDENCE.md"
 
-setup: driver extension
+setup: extension driver
 
-# A software Vulkan driver, where no driver answers. Only Debian and Ubuntu are known here; elsewhere the message says what is missing.
-driver:
-	@if ! ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json >/dev/null 2>&1; then \
-	  echo "no Vulkan driver found: installing Mesa's software driver"; \
+# A software Vulkan driver, where no adapter is found. Only Debian and Ubuntu are known here.
+driver: extension
+	@if ! $(BIN)/python -c "import sys, softshadow; sys.exit(not softshadow.doctor().adapters)" 2>/dev/null; then \
+	  echo "no adapter found: installing Mesa's software Vulkan driver"; \
 	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); \
 	  $$sudo apt-get update -qq && $$sudo apt-get install -y -qq mesa-vulkan-drivers libvulkan1 libegl1 libgl1-mesa-dri; \
 	fi

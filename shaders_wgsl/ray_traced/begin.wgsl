@@ -31,7 +31,7 @@ fn begin(@builtin(global_invocation_id) invocation: vec3<u32>) {
         var mask = select(0u, 0xffffffffu, hidden);
         let here = min(32u, sampling.count - 32u * word);
         for (var bit = 0u; bit < select(here, 0u, hidden || open || all_above); bit++) {
-            let way = light_way(light_sample(light, view, light_samples[32u * word + bit]), receiver.position);
+            let way = light_way(light_sample(light, view, light_samples[32u * word + bit], receiver.position), receiver.position);
             mask |= select(0u, 1u << bit, below_horizon(receiver, way));
         }
         blocked[index * sampling.words + word] = mask;

@@ -3,6 +3,10 @@
 //#import shared/light.wgsl
 //#import ray_traced/hierarchy.wgsl
 
+// Share of the pad by which a box may lie below the receiver's plane and still count: 6.4 u, more than rounding costs, and less
+// than the receiver's lift, so that what lies in its own plane stays below.
+const HORIZON_SLACK: f32 = 0.4;
+
 struct Bundle {
     origin: vec3<f32>,
     pad: f32,
@@ -42,8 +46,7 @@ fn bundle_meets(bundle: Bundle, box: BvhNode) -> bool {
     let leaves = min(select(endless, t_low, bundle.high < zero), select(endless, t_high, bundle.low > zero));
     let begin = max(0.0, max(enters.x, max(enters.y, enters.z)));
     let end = min(bundle.end, min(leaves.x, min(leaves.y, leaves.z)));
-    // What lies below the receiver's own plane lies between it and no visible sample. The slack is less than the receiver's
-    // lift, so that what lies in its plane stays below.
+    // What lies below the receiver's own plane lies between it and no visible sample.
     let top = dot(max(bundle.normal * low, bundle.normal * high), vec3<f32>(1.0));
-    return begin <= end * 1.00001 && (!bundle.has_horizon || top >= -0.25 * bundle.pad);
+    return begin <= end * 1.00001 && (!bundle.has_horizon || top >= -HORIZON_SLACK * bundle.pad);
 }

@@ -24,18 +24,23 @@ fn triangle_can_block(receiver: Receiver, k: u32, ways: WayBounds, horizon_slack
     let c = v2 - receiver.position;
     let top = max(dot(receiver.normal, a), max(dot(receiver.normal, b), dot(receiver.normal, c)));
     let rises = receiver.kind != RECEIVER_SURFACE || top >= -horizon_slack;
-    let ab = way_range(cross(a, v1 - v0), ways);
-    let bc = way_range(cross(b, v2 - v1), ways);
-    let ca = way_range(cross(a, v0 - v2), ways);
+    let ab = way_range(a, v1 - v0, ways);
+    let bc = way_range(b, v2 - v1, ways);
+    let ca = way_range(a, v0 - v2, ways);
     let can_enclose = (ab.y >= 0.0 && bc.y >= 0.0 && ca.y >= 0.0) || (ab.x <= 0.0 && bc.x <= 0.0 && ca.x <= 0.0);
     return rises && can_enclose && corner.triangle != receiver.triangle;
 }
 
-// Smallest and largest value of way · normal over the bundle, widened by what rounding can cost.
-fn way_range(normal: vec3<f32>, ways: WayBounds) -> vec2<f32> {
+// Smallest and largest value of way · (corner × edge) over the bundle, widened by what rounding can cost here and in the rays'
+// own test: a share of the products before any of them cancel.
+fn way_range(corner: vec3<f32>, edge: vec3<f32>, ways: WayBounds) -> vec2<f32> {
+    let normal = cross(corner, edge);
+    let c = abs(corner);
+    let e = abs(edge);
+    let uncancelled = c.yzx * e.zxy + c.zxy * e.yzx;
+    let slack = 4e-6 * dot(max(abs(ways.low), abs(ways.high)), uncancelled);
     let at_low = ways.low * normal;
     let at_high = ways.high * normal;
-    let slack = dot(max(abs(at_low), abs(at_high)), vec3<f32>(4e-6));
     let least = dot(min(at_low, at_high), vec3<f32>(1.0));
     let most = dot(max(at_low, at_high), vec3<f32>(1.0));
     return vec2<f32>(least - slack, most + slack);
@@ -44,7 +49,7 @@ fn way_range(normal: vec3<f32>, ways: WayBounds) -> vec2<f32> {
 // Where the rays of the candidate begin: at the first leaf with such a triangle; after its last node where there is none.
 // A long walk is given up: it would cost more than the rays that it saves.
 fn first_leaf(receiver: Receiver, candidate: Candidate, ways: WayBounds) -> u32 {
-    let slack = 0.25 * box_pad(receiver.position);
+    let slack = HORIZON_SLACK * box_pad(receiver.position);
     let bundle = bundle_of(receiver, ways, light.kind == LIGHT_SUN);
     var node = candidate.first_node;
     var leaf_node = node;

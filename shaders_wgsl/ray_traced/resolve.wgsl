@@ -14,7 +14,7 @@
 
 // Welford's update of mean and standard error with the value of one more pass. The standard error's slot holds the sum of
 // squared deviations until the last pass.
-fn accumulate(slot: u32, value: f32) {
+fn accumulate(slot: u32, value: f32, known: u32) {
     var mean = value;
     var deviations = 0.0;
     if (sampling.pass_index > 0u) {
@@ -28,7 +28,9 @@ fn accumulate(slot: u32, value: f32) {
     } else if (sampling.passes > 1u) {
         standard_error[slot] = sqrt(max(deviations, 0.0) / f32(sampling.passes - 1u) / f32(sampling.passes));
     } else {
-        standard_error[slot] = sqrt(max(mean * (1.0 - mean), 0.0) / f32(max(sampling.count, 2u) - 1u));
+        // One sample says nothing about its own error, which is at most a half.
+        let binomial = sqrt(max(mean * (1.0 - mean), 0.0) / f32(max(known, 2u) - 1u));
+        standard_error[slot] = select(binomial, 0.5, known < 2u);
     }
 }
 
@@ -53,7 +55,7 @@ fn resolve(@builtin(global_invocation_id) invocation: vec3<u32>) {
     for (var word = 0u; 32u * word < known; word++) {
         hidden += countOneBits(mask_word(index, word, known));
     }
-    accumulate(index, 1.0 - f32(hidden) / f32(known));
+    accumulate(index, 1.0 - f32(hidden) / f32(known), known);
 }
 
 // Textured light: V = Σ L·visible / Σ L by channel; a channel without light returns the share of area.
@@ -78,7 +80,7 @@ fn resolve_textured(@builtin(global_invocation_id) invocation: vec3<u32>) {
     }
     let by_area = vec3<f32>(1.0 - f32(hidden) / f32(known));
     let value = select(by_area, seen / max(whole, vec3<f32>(1e-37)), whole > vec3<f32>(0.0));
-    accumulate(3u * index, value.x);
-    accumulate(3u * index + 1u, value.y);
-    accumulate(3u * index + 2u, value.z);
+    accumulate(3u * index, value.x, known);
+    accumulate(3u * index + 1u, value.y, known);
+    accumulate(3u * index + 2u, value.z, known);
 }

@@ -78,7 +78,7 @@ fn trace(
         let word = index * sampling.words + sample / 32u;
         let bit = 1u << (sample % 32u);
         if ((atomicLoad(&blocked[word]) & bit) == 0u) {
-            let way = light_way(light_sample(light, view, light_samples[sample]), receiver.position);
+            let way = light_way(light_sample(light, view, light_samples[sample], receiver.position), receiver.position);
             if (is_blocked(receiver, way, unbounded, walk, pad)) {
                 atomicOr(&blocked[word], bit);
             }

@@ -65,5 +65,7 @@ fn place(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let toward_camera = raw * select(-1.0, 1.0, dot(raw, a) < 0.0);
     let normal = toward_camera / max(length(toward_camera), 1e-30);
     let lifted = receiver_lift(position, normal, camera_rays.scene_extent);
-    receivers[index] = Receiver(lifted, id - 1u, normal, RECEIVER_SURFACE);
+    // A triangle that is a line in float32 has no normal, and so no horizon.
+    let has_normal = dot(toward_camera, toward_camera) > 0.0;
+    receivers[index] = Receiver(lifted, id - 1u, normal, select(RECEIVER_POINT, RECEIVER_SURFACE, has_normal));
 }

@@ -40,7 +40,11 @@ const INVERSE_PI: f32 = 0.31830987;
 
 // Radiance that one unblocked sample sends from the receiver to the eye.
 fn sample_contribution(receiver: Receiver, view: LightView, sample: u32, material: Material) -> vec3<f32> {
-    let s = light_sample(light, view, light_samples[sample]);
+    if (view.inside) {
+        // Light from everywhere: a Lambert surface returns its share of it.
+        return light.radiance * material.base_color / f32(sampling.count);
+    }
+    let s = light_sample(light, view, light_samples[sample], receiver.position);
     let way = light_way(s, receiver.position);
     let squared = max(dot(way, way), 1e-30);
     let direction = way * inverseSqrt(squared);
@@ -49,7 +53,7 @@ fn sample_contribution(receiver: Receiver, view: LightView, sample: u32, materia
     if (light.kind == LIGHT_FLAT) {
         solid_angle = light.measure * max(-dot(light.emission, direction), 0.0) / squared;
     } else if (light.kind == LIGHT_SPHERE) {
-        solid_angle = 6.2831853 * select(view.cap, 2.0, view.inside);
+        solid_angle = 6.2831853 * view.cap;
     }
     let to_eye = shading.eye - receiver.position;
     let halfway = direction + to_eye * inverseSqrt(max(dot(to_eye, to_eye), 1e-30));

@@ -24,6 +24,7 @@ struct LightView {
     x_axis: vec3<f32>,
     y_axis: vec3<f32>,
     cap: f32,            // 1 - cosine of the half angle of a sphere
+    sine_squared: f32,   // of that half angle
     distance: f32,
     exists: bool,        // false behind a flat light, where nothing is visible
     inside: bool,        // the receiver lies inside a sphere light: everything is visible
@@ -39,7 +40,9 @@ fn light_view(light: Light, receiver: vec3<f32>) -> LightView {
         view.distance = sqrt(squared);
         let sine_squared = light.radius * light.radius / max(squared, 1e-37);
         view.inside = sine_squared >= 1.0;
-        view.cap = sine_squared / (1.0 + sqrt(max(1.0 - sine_squared, 0.0)));
+        view.sine_squared = min(sine_squared, 1.0);
+        // On the surface and inside the light is everywhere; a cap just below a hemisphere keeps every number finite.
+        view.cap = min(sine_squared / (1.0 + sqrt(max(1.0 - sine_squared, 0.0))), 0.999);
         // Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
         let n = axis / max(view.distance, 1e-37);
         let s = select(-1.0, 1.0, n.z >= 0.0);
@@ -52,14 +55,18 @@ fn light_view(light: Light, receiver: vec3<f32>) -> LightView {
 }
 
 // A point on the light and 1, or a direction towards the sun and 0.
-fn light_sample(light: Light, view: LightView, record: vec4<f32>) -> vec4<f32> {
+fn light_sample(light: Light, view: LightView, record: vec4<f32>, receiver: vec3<f32>) -> vec4<f32> {
     if (light.kind != LIGHT_SPHERE) {
         return record;
     }
     // Uniform in solid angle: `share` of the cap lies inside this sample's cone.
     let share = record.x * record.x + record.y * record.y;
-    let reach = view.distance * sqrt(view.cap * (2.0 - share * view.cap)) / (1.0 - share * view.cap);
-    return vec4<f32>(light.center + (view.x_axis * record.x + view.y_axis * record.y) * reach, 1.0);
+    let reach = sqrt(view.cap * (2.0 - share * view.cap)) / (1.0 - share * view.cap);
+    let offset = (view.x_axis * record.x + view.y_axis * record.y) * (reach * view.distance);
+    // From the disc through the centre back to the surface: what lies behind the front of the light hides nothing.
+    let outside = 1.0 - view.sine_squared;
+    let to_surface = outside / (1.0 + sqrt(max(1.0 - (1.0 + reach * reach * share) * outside, 0.0)));
+    return vec4<f32>(receiver + (light.center - receiver + offset) * to_surface, 1.0);
 }
 
 // The way from a receiver to a sample: the whole segment, or a direction towards the sun.

@@ -75,7 +75,6 @@ pub fn compare(
             times[index].push(results[index].info.wall_ms);
         }
     }
-    let mut reference_standard_error = None;
     let mut rows = Vec::with_capacity(techniques.len());
     for ((technique, result), times) in techniques.iter().zip(&results).zip(&mut times) {
         let image = metrics::ReferenceImage {
@@ -84,10 +83,9 @@ pub fn compare(
             width: truth.image.filter(|_| truth.channels == 1).map(|[width, _]| width as usize),
         };
         let report = metrics::compare(&result.values, &image).map_err(|error| Error::Measure(error.to_string()))?;
-        reference_standard_error = report.penumbra_reference_se;
         rows.push(row(technique, result, times, report));
     }
-    Ok(Comparison { reference: truth.info, reference_standard_error, rows })
+    Ok(Comparison { reference_standard_error: truth.info.standard_error, reference: truth.info, rows })
 }
 
 fn row(technique: &Technique, result: &Visibility, times: &mut [f64], errors: ErrorReport) -> ComparisonRow {

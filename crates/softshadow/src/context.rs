@@ -110,8 +110,8 @@ impl Context {
             Receivers::Camera(_) => None,
         };
         let binding = self.engine()?.host().limits.storage_binding_bytes;
-        let contents = Arc::new(SceneContents::new(LocalScene::new(scene, bounds, binding)?));
-        if scene.bounds().is_some() {
+        let contents = Arc::new(SceneContents::new(LocalScene::new(scene, bounds, binding)));
+        if contents.local.triangle_count() > 0 {
             scenes.push_back((scene.identity(), Arc::clone(&contents)));
             if scenes.len() > KEPT_SCENES {
                 scenes.pop_front();

@@ -38,7 +38,7 @@ pub struct Info {
     pub notes: Vec<String>,
     /// `statistical`: values have a standard error. `none`: nothing is known about their error.
     pub error_kind: &'static str,
-    /// Root mean square of the standard error over valid values, where there is one.
+    /// Root mean square of the standard error over the penumbra, where there is one.
     pub standard_error: Option<f64>,
     /// The passes, why each is there, and what each resource weighs.
     pub plan: String,

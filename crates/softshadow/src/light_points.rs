@@ -1,6 +1,8 @@
 //! Light samples where the caller can read them, so that two renderers can be compared sample by sample.
 
-use softshadow_scene::{Light, LightSamples, LightShape, LocalFrame, SamplePattern, Scene, sample_positions};
+use softshadow_scene::{
+    Light, LightSamples, LightShape, LocalFrame, SamplePattern, Scene, occluder_bounds, sample_positions,
+};
 
 use crate::error::Error;
 
@@ -29,7 +31,7 @@ pub fn light_points(
     seed: u32,
     receivers: &[[f64; 3]],
 ) -> Result<LightPoints, Error> {
-    let frame = LocalFrame::around(scene.bounds());
+    let frame = LocalFrame::around(occluder_bounds(scene));
     let samples = LightSamples::new(light, &frame, pattern, count, seed)?;
     let at_infinity = matches!(light.shape(), LightShape::Sun { .. });
     let turns = matches!(light.shape(), LightShape::Sphere { .. });

@@ -205,8 +205,9 @@ pub(crate) fn run(
     Ok(collector.finish(report))
 }
 
-/// Rays that a block may need at most.
-const RAYS_PER_BLOCK: u64 = 1 << 27;
+/// Rays that a block may need at most, but for a block of a single row: some seconds on a slow software driver. A caller can stop
+/// between blocks.
+const RAYS_PER_BLOCK: u64 = 1 << 26;
 
 /// How many receivers fit the memory limit and the device's bindings.
 fn receivers_per_block(
@@ -372,7 +373,10 @@ impl<'a> Collector<'a> {
         blank(&mut self.result.values);
         if let Some(errors) = &mut self.result.standard_error {
             blank(errors);
-            let known: Vec<f64> = errors.iter().filter(|e| !e.is_nan()).map(|e| f64::from(*e)).collect();
+            // Outside the penumbra all samples agree, and the estimate of their error is 0.
+            let in_penumbra = |v: &f32| *v > 0.002 && *v < 0.998;
+            let pairs = errors.iter().zip(&self.result.values);
+            let known: Vec<f64> = pairs.filter(|(_, v)| in_penumbra(v)).map(|(e, _)| f64::from(*e)).collect();
             if !known.is_empty() {
                 let mean_square = known.iter().map(|e| e * e).sum::<f64>() / known.len() as f64;
                 self.result.info.standard_error = Some(mean_square.sqrt());

@@ -90,14 +90,17 @@ fn enumerate(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     found
 }
 
-/// Adapters for a choice. GL is asked only where nothing else answers, or by its index: opening it is slow and noisy.
+/// Adapters for a choice. GL is asked only where nothing else answers, for a GPU that must be, or by its index: opening it is
+/// slow and noisy.
 fn candidates(choice: AdapterChoice) -> Vec<wgpu::Adapter> {
     match choice {
         AdapterChoice::Noop => enumerate(wgpu::Backends::NOOP),
         AdapterChoice::Index(_) => enumerate(ALL),
         _ => {
             let found = enumerate(wgpu::Backends::PRIMARY);
-            if found.is_empty() { enumerate(ALL) } else { found }
+            let has_gpu = found.iter().any(|a| kind(&a.get_info()) == DeviceKind::Gpu);
+            let wants_gpu = choice == AdapterChoice::Gpu && !has_gpu;
+            if found.is_empty() || wants_gpu { enumerate(ALL) } else { found }
         }
     }
 }

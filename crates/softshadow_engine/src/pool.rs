@@ -7,7 +7,8 @@ use softshadow_plan::{Content, ContentKey, Origin, Resource, Shape};
 use crate::error::EngineError;
 use crate::pipelines::texture_format;
 
-/// Runs after which what was not used is given back.
+/// Runs after which uploads that were not used are given back. Other buffers are given back after one: a caller's memory limit
+/// holds for each call, and its buffers must not pile up.
 const KEPT_RUNS: u64 = 8;
 
 #[derive(Clone)]
@@ -43,12 +44,13 @@ impl Pool {
     /// Begins a run and gives back what has not been used for a while.
     pub(crate) fn begin_run(&mut self) {
         self.run += 1;
-        let oldest = self.run.saturating_sub(KEPT_RUNS);
-        self.slots.retain(|_, (slot, used)| {
-            if *used < oldest {
+        let run = self.run;
+        self.slots.retain(|key, (slot, used)| {
+            let kept = *used + if matches!(key, Key::Content(_)) { KEPT_RUNS } else { 1 } >= run;
+            if !kept {
                 slot.destroy();
             }
-            *used >= oldest
+            kept
         });
     }
 

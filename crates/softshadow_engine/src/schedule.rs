@@ -4,8 +4,8 @@ use softshadow_plan::{Host, Over, Pass, Plan, Work};
 
 use crate::timing::Timing;
 
-/// Rays or similar steps of one submission: below a second on a slow software driver, so that watchdogs stay quiet and a
-/// caller can stop in between.
+/// Steps of one submission over items: below a second on a slow software driver, so that watchdogs stay quiet and a caller can
+/// stop in between. Work of an indirect dispatch is known to the device alone: who plans one bounds it by the size of its blocks.
 const WORK_PER_SUBMISSION: u64 = 1 << 25;
 
 /// A dispatch or another step, with the part of the items that it covers.

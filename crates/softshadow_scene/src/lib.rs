@@ -21,7 +21,7 @@ pub use error::SceneError;
 pub use frame::{LocalFrame, look_at};
 pub use light::{Light, LightShape, LightTexture, LocalLight, UpAxis};
 pub use light_samples::{LightSamples, MAX_SAMPLES, SamplePattern, pass_seed, sample_positions, unit_square};
-pub use local::{Corner, Dropped, LocalScene, SubScene};
+pub use local::{Corner, Dropped, LocalScene, SubScene, occluder_bounds};
 pub use mesh::{MAX_TRIANGLES, Material, Mesh};
 pub use receivers::{LocalPoint, Points, Receivers};
 pub use scene::Scene;

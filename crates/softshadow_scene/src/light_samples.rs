@@ -244,7 +244,7 @@ fn polygon_points(outline: &[[f64; 2]], square: &[[f64; 2]]) -> Result<Vec<DVec2
 
 /// Positions of the samples as one receiver sees them, in local float64: positions with `true`, directions with `false`.
 ///
-/// For a sphere these are the points of the tangent disc through its centre, uniform in solid angle; the kernels compute
+/// For a sphere these are points of the surface that the receiver sees, uniform in solid angle; the kernels compute
 /// the same in float32 (`shaders_wgsl/shared/light.wgsl`). `None` for a receiver inside the sphere.
 #[must_use]
 pub fn sample_positions(
@@ -267,8 +267,12 @@ pub fn sample_positions(
     let (x_axis, y_axis) = (axis / axis.length()).any_orthonormal_pair();
     let place = |r: &[f32; 4]| {
         let (x, y) = (f64::from(r[0]), f64::from(r[1]));
-        let reach = axis.length() * cap_reach(cap, x * x + y * y);
-        (center + (x_axis * x + y_axis * y) * reach, true)
+        let (share, reach) = (x * x + y * y, cap_reach(cap, x * x + y * y));
+        let to_disc = axis + (x_axis * x + y_axis * y) * (reach * axis.length());
+        // From the disc through the centre back to the surface.
+        let outside = 1.0 - sine * sine;
+        let to_surface = outside / (1.0 + (1.0 - (1.0 + reach * reach * share) * outside).max(0.0).sqrt());
+        (receiver + to_disc * to_surface, true)
     };
     Some(samples.records.iter().map(place).collect())
 }

@@ -7,7 +7,6 @@
 use glam::DVec3;
 
 use crate::bvh::{Bvh, BvhNode};
-use crate::error::SceneError;
 use crate::frame::LocalFrame;
 use crate::mesh::Material;
 use crate::scene::Scene;
@@ -67,33 +66,17 @@ impl LocalScene {
     /// `frame_points` are further points that the frame should cover where the scene has no vertex at all.
     /// `max_binding_bytes` is the largest storage binding of the host.
     ///
-    /// # Errors
-    /// [`SceneError::NotFinite`] when a coordinate overflows float32 although it is finite in float64.
-    pub fn new(
-        scene: &Scene,
-        frame_points: Option<([f64; 3], [f64; 3])>,
-        max_binding_bytes: u64,
-    ) -> Result<Self, SceneError> {
-        let frame = LocalFrame::around(scene.bounds().or(frame_points));
+    /// Every local coordinate lies in `[-1, 1]`, so none overflows.
+    #[must_use]
+    pub fn new(scene: &Scene, frame_points: Option<([f64; 3], [f64; 3])>, max_binding_bytes: u64) -> Self {
+        let frame = LocalFrame::around(occluder_bounds(scene).or(frame_points));
         let mut dropped = Dropped::default();
         let mut rows: Vec<([[f32; 3]; 3], u32, u32)> = Vec::with_capacity(scene.triangle_count());
         let mut caller_id = 0u32;
         for (mesh_id, mesh) in scene.meshes().iter().enumerate() {
-            let local: Vec<[f32; 3]> = mesh
-                .vertices
-                .iter()
-                .enumerate()
-                .map(|(index, v)| {
-                    let rounded = frame.local_from_world(*v).as_vec3();
-                    // Adding +0 turns −0 into +0: equal positions must be equal bits.
-                    let positive_zero = rounded + glam::Vec3::ZERO;
-                    let what = || format!("mesh '{}' vertices, relative to the scene in float32,", mesh.name);
-                    positive_zero
-                        .is_finite()
-                        .then_some(positive_zero.to_array())
-                        .ok_or_else(|| SceneError::NotFinite { what: what(), index })
-                })
-                .collect::<Result<_, _>>()?;
+            // Adding +0 turns −0 into +0: equal positions must be equal bits.
+            let rounded = |v: &[f64; 3]| (frame.local_from_world(*v).as_vec3() + glam::Vec3::ZERO).to_array();
+            let local: Vec<[f32; 3]> = mesh.vertices.iter().map(rounded).collect();
             for triangle in &mesh.triangles {
                 let id = caller_id;
                 caller_id += 1;
@@ -124,7 +107,7 @@ impl LocalScene {
         for chunk in rows.chunks(triangles_per_binding(max_binding_bytes)) {
             built.append(chunk);
         }
-        Ok(built)
+        built
     }
 
     /// How many triangles there are.
@@ -158,8 +141,30 @@ fn triangles_per_binding(max_binding_bytes: u64) -> usize {
     (max_binding_bytes / (2 * size_of::<BvhNode>() as u64)).clamp(1, 1 << 27) as usize
 }
 
+/// Without area: repeated or collinear corners. Edges are scaled first, so that tiny triangles do not underflow, and a height below
+/// a few roundings of the longest edge is none.
 fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
-    (b - a).cross(c - a) == DVec3::ZERO
+    let (e, f) = (b - a, c - a);
+    let scale = e.abs().max(f.abs()).max_element();
+    scale == 0.0 || (e / scale).cross(f / scale).length() <= 1e-15
+}
+
+/// The smallest box around everything that can cast a shadow: vertices of triangles with an area. A vertex that no triangle uses
+/// must not decide about the scene's frame.
+#[must_use]
+pub fn occluder_bounds(scene: &Scene) -> Option<([f64; 3], [f64; 3])> {
+    let mut bounds: Option<(DVec3, DVec3)> = None;
+    for mesh in scene.meshes() {
+        for triangle in &mesh.triangles {
+            let corners = triangle.map(|v| DVec3::from(mesh.vertices[v as usize]));
+            if !is_flat(corners) {
+                for corner in corners {
+                    bounds = Some(bounds.map_or((corner, corner), |(low, high)| (low.min(corner), high.max(corner))));
+                }
+            }
+        }
+    }
+    bounds.map(|(low, high)| (low.to_array(), high.to_array()))
 }
 
 fn position_order(a: &[f32; 3], b: &[f32; 3]) -> std::cmp::Ordering {
@@ -194,7 +199,7 @@ mod tests {
 
     fn local(vertices: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> LocalScene {
         let mesh = Mesh::new("grid", vertices, triangles, Material::default()).unwrap();
-        LocalScene::new(&Scene::new(vec![mesh]).unwrap(), None, ROOMY).unwrap()
+        LocalScene::new(&Scene::new(vec![mesh]).unwrap(), None, ROOMY)
     }
 
     #[test]
@@ -241,14 +246,32 @@ mod tests {
     }
 
     #[test]
+    fn vertices_that_nothing_uses_do_not_move_the_frame() {
+        let (mut vertices, triangles) = grid(9, 1.0, [0.0; 3]);
+        let base = local(vertices.clone(), triangles.clone());
+        vertices.push([1e9, -1e300, 3.0]);
+        assert_eq!(base, local(vertices, triangles));
+    }
+
+    #[test]
+    fn collinear_corners_have_no_area_at_any_scale() {
+        let line = |scale: f64| [0.1, 0.4, 0.7].map(|t| DVec3::new(0.3 + t / 3.0, 0.2 - t * 0.7, t) * scale);
+        for scale in [1e-200, 1.0, 1e200] {
+            assert!(is_flat(line(scale)), "{scale}");
+            let [a, b, c] = line(scale);
+            assert!(!is_flat([a, b + DVec3::X * (1e-9 * scale), c]), "{scale}");
+        }
+    }
+
+    #[test]
     fn a_scene_over_the_binding_limit_is_cut() {
         let (vertices, triangles) = grid(20, 1.0, [0.0; 3]);
         let mesh = Mesh::new("grid", vertices, triangles, Material::default()).unwrap();
         let scene = Scene::new(vec![mesh]).unwrap();
-        let cut = LocalScene::new(&scene, None, 64 * 100).unwrap();
+        let cut = LocalScene::new(&scene, None, 64 * 100);
         assert_eq!(cut.sub_scenes.len(), 8);
         assert!(cut.sub_scenes.iter().all(|s| s.corners.len() * 16 <= 6400 && s.nodes.len() * 32 <= 6400));
-        let mut whole: Vec<_> = LocalScene::new(&scene, None, ROOMY).unwrap().triangles().collect();
+        let mut whole: Vec<_> = LocalScene::new(&scene, None, ROOMY).triangles().collect();
         let mut parts: Vec<_> = cut.triangles().collect();
         whole.sort_by(triangle_order);
         parts.sort_by(triangle_order);

@@ -67,6 +67,7 @@ impl VisibilityProgram<'_> {
             light: &self.lights[task.light],
             channels: self.channels,
             opens_block: task.light == 0 && task.pass == 0,
+            first_light: task.light == 0,
             opens_run: task.block == 0 && task.light == 0 && task.pass == 0,
             closes_light: last_pass,
             closes_block: last_pass && task.light + 1 == self.lights.len(),

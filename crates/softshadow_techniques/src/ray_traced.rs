@@ -288,6 +288,8 @@ fn append_results(
             let seen = Seen::Masks { blocked, decided };
             shading::append(plan, request, receivers, light, seen, settings.samples);
         }
+        // The visibility is known after the last pass only.
+        Some(shading::Shading::Modulated) if !request.closes_light => {}
         Some(shading::Shading::Modulated) => {
             shading::append(plan, request, receivers, light, Seen::Values(visibility), settings.samples);
         }

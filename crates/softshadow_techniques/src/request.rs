@@ -64,6 +64,8 @@ pub struct Request<'a> {
     pub channels: u32,
     /// This is the first light and pass of the block: receivers are placed, pictures begin.
     pub opens_block: bool,
+    /// This is the first light of the call.
+    pub first_light: bool,
     /// This is the first block: what serves all blocks is drawn.
     pub opens_run: bool,
     /// This is the light's last pass: results leave.

@@ -59,7 +59,7 @@ impl Truth {
 
     /// With triangles that the device does not know, to show that differences are seen.
     pub(crate) fn with(scene: &Scene, spoil: impl Fn(&mut [Triangle])) -> Self {
-        let local = LocalScene::new(scene, None, 128 << 20).unwrap();
+        let local = LocalScene::new(scene, None, 128 << 20);
         let mut triangles: Vec<Triangle> = local.triangles().map(|t| t.map(|p| p.map(f64::from))).collect();
         spoil(&mut triangles);
         let index_of_caller_id = local.caller_ids.iter().enumerate().map(|(i, id)| (i64::from(*id), i)).collect();

@@ -15,7 +15,7 @@ const DISTANCES: [f64; 4] = [0.0, 10.0, 100.0, 1000.0];
 
 /// World heights below which a sheet over `position` may be lost, for a receiver with a normal and for one without.
 fn bounds(scene: &Scene, position: Point) -> [f64; 2] {
-    let local = LocalScene::new(scene, None, 128 << 20).unwrap();
+    let local = LocalScene::new(scene, None, 128 << 20);
     let p = local.frame.local_from_world(position).abs().max_element();
     let lift = 14.0 * U * (p + f64::from(local.extent));
     // Half a last place each for the sheet and the receiver, and once more for the receiver that was lifted.

@@ -20,5 +20,6 @@ mod pixels;
 mod same_samples;
 mod samples;
 mod shapes;
+mod sphere_lights;
 mod sub_scenes;
 mod watertight;

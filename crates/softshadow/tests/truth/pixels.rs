@@ -33,7 +33,7 @@ fn misplaced(context: &Context, name: &str, shift: f64) -> (usize, usize) {
     let options = Options { receivers: true, ..Options::default() };
     let receivers = Receivers::Camera(camera);
     let seen = visibility(context, &scene, &[light], &receivers, &ray_traced(1), &options, &mut |_, _| true).unwrap();
-    let local = LocalScene::new(&scene, None, 128 << 20).unwrap();
+    let local = LocalScene::new(&scene, None, 128 << 20);
     let triangles: Vec<Triangle> = local.triangles().map(|t| t.map(|p| p.map(f64::from))).collect();
     let view = camera.local(&local.frame);
     let eye = view.eye.to_array();

@@ -91,3 +91,29 @@ fn rays_at_corners_and_along_edges_do_not_slip_through() {
     assert!(of > 20_000);
     assert_eq!(visible, 0);
 }
+
+#[test]
+fn thin_bundles_along_an_axis_do_not_slip_through_a_shared_edge() {
+    // Every receiver stands under the diagonal of a quad at generic coordinates; all its rays are nearly one, and nearly vertical.
+    let corners: [Point; 4] = [[0.137, 0.291, 1.03], [1.419, 0.173, 1.21], [1.533, 1.371, 0.97], [0.211, 1.457, 1.12]];
+    let quad = [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]];
+    let receivers: Vec<Point> = (400..19_600)
+        .map(|i| [0, 1].map(|k| corners[0][k] + (corners[2][k] - corners[0][k]) * f64::from(i) / 20_000.0))
+        .map(|[x, y]| [x, y, 0.0])
+        .collect();
+    let sun = |elevation: f64, diameter: f64| Light::sun(33.0, elevation, diameter, softshadow::UpAxis::Z).unwrap();
+    let mut lights = vec![sun(90.0, 0.0), sun(90.0, 1e-6), sun(89.999, 0.0), sun(89.9999, 1e-4)];
+    lights.push(lamp(rectangle(0.0, 0.0), [0.8, 0.8, 1e4]));
+    lights.push(lamp(rectangle(1e-4, 1e-4), [0.8, 0.8, 400.0]));
+    for (index, light) in lights.iter().enumerate() {
+        let closed = see(&scene(&quad), std::slice::from_ref(light), &points(receivers.clone()), &ray_traced(4));
+        let (visible, of) = leaks(&closed, 4);
+        println!("watertight, thin bundle {index}: {visible} of {of} visible");
+        assert_eq!(visible, 0, "light {index}");
+        // Either half alone leaves a border: what its neighbour closes is open then.
+        let alone = quad.chunks(1).map(|half| {
+            leaks(&see(&scene(half), std::slice::from_ref(light), &points(receivers.clone()), &ray_traced(4)), 4).0
+        });
+        assert!(alone.sum::<usize>() > 0, "light {index}");
+    }
+}

@@ -18,7 +18,7 @@ fn sheets(binding: u64) -> SceneContents {
     let rows = |z: f64| vec![[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]];
     let sheet = |z| Mesh::new("sheet", rows(z), vec![[0, 1, 2], [0, 2, 3]], Material::default()).unwrap();
     let scene = Scene::new(vec![sheet(0.0), sheet(0.5)]).unwrap();
-    SceneContents::new(LocalScene::new(&scene, None, binding).unwrap())
+    SceneContents::new(LocalScene::new(&scene, None, binding))
 }
 
 fn lights() -> Vec<Light> {
@@ -148,7 +148,7 @@ fn one_light_in_one_block_is_one_submission() {
 #[test]
 fn an_empty_scene_is_run_too() {
     let engine = engine();
-    let scene = SceneContents::new(LocalScene::new(&Scene::new(Vec::new()).unwrap(), None, 1 << 20).unwrap());
+    let scene = SceneContents::new(LocalScene::new(&Scene::new(Vec::new()).unwrap(), None, 1 << 20));
     let (points, lights) = (Points::new(vec![[0.0; 3]; 9], None).unwrap(), lights());
     for technique in techniques() {
         let program = VisibilityProgram {

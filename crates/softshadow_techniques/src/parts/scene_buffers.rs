@@ -20,15 +20,6 @@ pub struct SceneContents {
     pub materials: Content,
 }
 
-/// The scene's resources in one plan.
-#[derive(Debug, Clone)]
-pub struct SceneBuffers {
-    /// Corners of each sub-scene.
-    pub corners: Vec<ResourceId>,
-    /// Hierarchy of each sub-scene; empty where only corners are used.
-    pub nodes: Vec<ResourceId>,
-}
-
 impl SceneContents {
     /// Lays a scene out as the kernels read it.
     #[must_use]

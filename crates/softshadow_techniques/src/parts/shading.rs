@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Content, Kernel, Over, Plan, ResourceId, Values};
-use softshadow_scene::{LightShape, Material};
+use softshadow_scene::Material;
 
 use crate::parts::light_buffers::LightBuffers;
 use crate::request::{ReceiverSource, Request};
@@ -120,30 +120,18 @@ pub fn append(
     }
 }
 
-/// The value of the parameter that [`append`] added.
+/// The value of the parameter that [`append`] added. Light with samples' own visibility is added in every one of `passes`; light
+/// times a final visibility once.
 pub fn values(request: &Request<'_>, passes: u32, values: &mut Values) {
     let eye = match request.receivers {
         ReceiverSource::Camera(camera) => camera.local(&request.scene.local.frame).eye.as_vec3().to_array(),
         ReceiverSource::Points(_) => [0.0; 3],
     };
-    let record = ShadingRecord {
-        eye,
-        adds: u32::from(!request.opens_block),
-        weight: 1.0 / passes as f32,
-        channels: request.channels,
-        reserved0: 0,
-        reserved1: 0,
+    let (begins, weight) = match request.wants.picture {
+        Some(Shading::Modulated) => (request.first_light, 1.0),
+        _ => (request.opens_block, 1.0 / passes as f32),
     };
+    let record =
+        ShadingRecord { eye, adds: u32::from(!begins), weight, channels: request.channels, reserved0: 0, reserved1: 0 };
     values.insert("shading".into(), bytemuck::bytes_of(&record).to_vec());
-}
-
-/// Whether a light has an area or a solid angle at all: without, a picture stays black and only visibility has a meaning.
-#[must_use]
-pub fn has_measure(shape: &LightShape) -> bool {
-    match shape {
-        LightShape::Rectangle { width, height } => *width > 0.0 && *height > 0.0,
-        LightShape::Disc { radius } | LightShape::Sphere { radius } => *radius > 0.0,
-        LightShape::Sun { angular_diameter } => *angular_diameter > 0.0,
-        LightShape::Polygon { .. } => true,
-    }
 }

@@ -28,7 +28,7 @@ impl Fixture {
         let rows = |z: f64| [[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]];
         let sheet = |z| Mesh::new("sheet", rows(z).to_vec(), vec![[0, 1, 2], [0, 2, 3]], Material::default()).unwrap();
         let sheets = Scene::new(vec![sheet(0.0), sheet(0.5)]).unwrap();
-        let contents = |scene: &Scene, binding| SceneContents::new(LocalScene::new(scene, None, binding).unwrap());
+        let contents = |scene: &Scene, binding| SceneContents::new(LocalScene::new(scene, None, binding));
         // Two hierarchy nodes of 32 bytes a triangle: 128 bytes hold two of the four triangles.
         let scenes =
             [contents(&Scene::new(Vec::new()).unwrap(), 1 << 20), contents(&sheets, 1 << 20), contents(&sheets, 128)];
@@ -70,6 +70,7 @@ impl Fixture {
             light: &self.lights[0],
             channels: 1,
             opens_block: true,
+            first_light: true,
             opens_run: true,
             closes_light: true,
             closes_block: true,

@@ -1,0 +1,66 @@
+//! Sphere lights where they meet something: what lies behind their front hides nothing, and inside them is light everywhere.
+
+use softshadow::{
+    Camera, Light, LightShape, Material, Mesh, PictureOptions, RayTraced, Scene, Shading, Technique, render,
+};
+
+use crate::common::{context, lamp, points, ray_traced, rectangle, see};
+
+fn plate(z: f64, half: f64) -> Mesh {
+    let corners = [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]];
+    let material = Material { base_color: [0.8; 3], roughness: 1.0, specular: 0.0 };
+    Mesh::new("plate", corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]], material).unwrap()
+}
+
+#[test]
+fn a_ceiling_behind_a_lamp_hides_nothing_of_it() {
+    let lamp_under = |z: f64| Scene::new(vec![plate(z, 20.0)]).unwrap();
+    let light = lamp(LightShape::Sphere { radius: 1.0 }, [0.0, 0.0, 1.0]);
+    let receivers =
+        points(vec![[1.05, 0.0, 1.0], [1.5, 0.0, 1.0], [1.2, 0.3, 0.6], [3.0, -1.0, 0.2], [0.2, 0.1, -2.0]]);
+    let seen = see(&lamp_under(2.1), std::slice::from_ref(&light), &receivers, &ray_traced(256));
+    assert_eq!(seen.values, [1.0; 5], "the plate lies wholly behind the lamp");
+    // A plate that cuts the lamp hides what lies above it.
+    let cut = see(&lamp_under(1.2), std::slice::from_ref(&light), &receivers, &ray_traced(256));
+    assert!([1, 3].iter().all(|&i: &usize| cut.values[i] < 0.9), "{:?}", cut.values);
+}
+
+fn brightness(scene: &Scene, lights: &[Light], technique: RayTraced, shading: Shading) -> f64 {
+    let camera = Camera::look_at([0.0, 0.0, 2.0], [0.0; 3], None, 30.0, [8, 8]).unwrap();
+    let options = PictureOptions { shading, ..PictureOptions::default() };
+    let technique = Technique::RayTraced(technique);
+    let picture = render(context(), scene, lights, &camera, &technique, &options, &mut |_, _| true).unwrap();
+    assert!(picture.linear.iter().flatten().all(|c| c.is_finite()));
+    picture.linear.iter().map(|c| f64::from(c[0])).sum::<f64>() / 64.0
+}
+
+#[test]
+fn inside_a_sphere_light_a_surface_returns_its_share() {
+    let scene = Scene::new(vec![plate(0.0, 3.0)]).unwrap();
+    let light = lamp(LightShape::Sphere { radius: 9.0 }, [0.0, 0.0, 0.0]);
+    for samples in [1, 16, 64] {
+        let technique = RayTraced { samples, ..RayTraced::default() };
+        let seen = brightness(&scene, std::slice::from_ref(&light), technique, Shading::Integrated);
+        assert!((seen - 0.8).abs() < 1e-5, "{samples} samples: {seen}");
+    }
+}
+
+#[test]
+fn modulated_light_is_the_unshadowed_light_times_the_final_visibility() {
+    // Half the light is hidden from everywhere: the modulated picture is half as bright, however many passes there are.
+    let open = Scene::new(vec![plate(0.0, 3.0)]).unwrap();
+    let light = lamp(rectangle(0.5, 0.5), [0.0, 0.0, 60.0]);
+    let half = Mesh::new(
+        "cover",
+        vec![[0.0, -9.0, 59.9], [9.0, -9.0, 59.9], [9.0, 9.0, 59.9], [0.0, 9.0, 59.9]],
+        vec![[0, 1, 2], [0, 2, 3]],
+        Material::default(),
+    );
+    let covered = Scene::new(vec![plate(0.0, 3.0), half.unwrap()]).unwrap();
+    for passes in [1, 2, 5] {
+        let technique = RayTraced { samples: 16, passes, ..RayTraced::default() };
+        let lights = [light.clone(), light.clone()];
+        let [whole, seen] = [&open, &covered].map(|s| brightness(s, &lights, technique.clone(), Shading::Modulated));
+        assert!((seen / whole - 0.5).abs() < 0.02, "{passes} passes: {}", seen / whole);
+    }
+}
