@@ -17,13 +17,15 @@ help:
 
 setup: extension driver
 
-# A software Vulkan driver, where no adapter is found. Only Debian and Ubuntu are known here.
+# A software Vulkan driver, where nothing but GL answers (or nothing at all). Only Debian and Ubuntu are known here.
 driver: extension
-	@if ! $(BIN)/python -c "import sys, softshadow; sys.exit(not softshadow.doctor().adapters)" 2>/dev/null; then \
-	  echo "no adapter found: installing Mesa's software Vulkan driver"; \
+	@if $(BIN)/python -c "import sys, softshadow; sys.exit(all(a['backend'] == 'gl' for a in softshadow.doctor().adapters))" 2>/dev/null; \
+	then :; elif command -v apt-get >/dev/null; then \
+	  echo "no Vulkan adapter found: installing Mesa's software driver"; \
 	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); \
-	  $$sudo apt-get update -qq && $$sudo apt-get install -y -qq mesa-vulkan-drivers libvulkan1 libegl1 libgl1-mesa-dri; \
-	fi
+	  $$sudo apt-get update -qq && \
+	  $$sudo apt-get install -y -qq mesa-vulkan-drivers libvulkan1 libegl1 libgl1-mesa-dri; \
+	else echo "no Vulkan adapter found: install a driver, for example Mesa's lavapipe"; fi
 
 venv: $(VENV)/.made
 
