@@ -18,7 +18,9 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
         Technique::RayTraced(settings) => (Some(settings), u64::from(settings.samples)),
         _ => (None, 64),
     };
-    let picture = request.wants.picture.is_some();
+    // Rays know their final visibility after the last pass, and only then is a light modulated by it.
+    let too_early = traced.is_some() && request.wants.picture == Some(Shading::Modulated) && !request.closes_light;
+    let picture = request.wants.picture.is_some() && !too_early;
 
     // Four words, and a receiver with the ends of its walk for each that may need rays; `layouts.rs` compares with the kernels.
     let list = 16 + 12 * count;
