@@ -7,7 +7,8 @@
 //! evaluated at the texel's centre, and what remains is half a texel and the slope within it.
 //!
 //! **When it is wrong.** Everywhere in a penumbra, by up to 1: the light is a point. Shadows end within a texel of where they
-//! should; gaps below about a texel are not resolved, on strongly curved surfaces a texel's width of light or dark may show.
+//! should; what lies inside a sphere light, but farther than half its radius from the centre, still shadows; gaps below about a
+//! texel are not resolved, on strongly curved surfaces a texel's width of light or dark may show.
 //!
 //! **Maps.** A frustum fitted to casters and receivers; beyond 120 degrees, or with the light inside the scene, six faces of a
 //! cube; for a sun one parallel view.
@@ -46,6 +47,9 @@ const LOOK_UP: Kernel = Kernel { file: "hard_shadow_map/look_up.wgsl", entry: "l
 
 /// Light samples of the unshadowed light in a picture.
 const SHADING_SAMPLES: u32 = 64;
+
+/// Distance of the near plane from a light without depth, in local units.
+const NEAREST: f64 = 1.0 / 65_536.0;
 
 /// `ShadowView` of `view.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -180,15 +184,22 @@ fn views(request: &Request<'_>, settings: &HardShadowMap) -> Vec<ShadowView> {
         return vec![parallel_view(&corners, place.emission, settings.resolution)];
     }
     let eye = place.center;
+    // What lies inside a sphere light casts no shadow. In the corners of a view of 60 degrees to either side, and so of a cube's
+    // face, a point at the depth of the near plane is up to twice as far away.
+    let radius = match request.light.shape() {
+        LightShape::Sphere { radius } => request.scene.local.frame.local_length(*radius),
+        _ => 0.0,
+    };
+    let near = (radius * 0.5).max(NEAREST);
     let middle = corners.iter().sum::<DVec3>() / 8.0;
     let half_angle = |forward: DVec3| corners.iter().map(|c| (*c - eye).angle_between(forward)).fold(0.0, f64::max);
     match (middle - eye).try_normalize() {
         // NaN, from a corner at the eye, compares as false and takes the cube.
         Some(forward) if half_angle(forward) <= std::f64::consts::FRAC_PI_3 => {
-            vec![fitted_view(&corners, eye, forward, settings.resolution)]
+            vec![fitted_view(&corners, eye, forward, near, settings.resolution)]
         }
         _ => [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z]
-            .map(|forward| face(eye, forward, [1.0, 1.0], settings.resolution))
+            .map(|forward| face(eye, forward, [1.0, 1.0], near, settings.resolution))
             .to_vec(),
     }
 }
@@ -219,21 +230,21 @@ fn hull(request: &Request<'_>) -> Option<[DVec3; 8]> {
     }))
 }
 
-fn fitted_view(corners: &[DVec3; 8], eye: DVec3, forward: DVec3, resolution: u32) -> ShadowView {
+fn fitted_view(corners: &[DVec3; 8], eye: DVec3, forward: DVec3, near: f64, resolution: u32) -> ShadowView {
     let (x, y) = forward.any_orthonormal_pair();
     let slope = |axis: DVec3| {
         corners.iter().map(|c| ((*c - eye).dot(axis) / (*c - eye).dot(forward)).abs()).fold(1e-6, f64::max)
     };
-    face(eye, forward, [slope(x), slope(y)], resolution)
+    face(eye, forward, [slope(x), slope(y)], near, resolution)
 }
 
 /// A perspective view with the given tangents of its half angles.
-fn face(eye: DVec3, forward: DVec3, tangents: [f64; 2], resolution: u32) -> ShadowView {
+fn face(eye: DVec3, forward: DVec3, tangents: [f64; 2], near: f64, resolution: u32) -> ShadowView {
     let (x, y) = forward.any_orthonormal_pair();
     let f32s = |v: DVec3| v.as_vec3().to_array();
     ShadowView {
         eye: f32s(eye),
-        near: 1.0 / 65_536.0,
+        near: near as f32,
         clip_x: f32s(x / tangents[0]),
         perspective: 1.0,
         clip_y: f32s(y / tangents[1]),

@@ -4,7 +4,7 @@ use softshadow::{
     Camera, Light, LightShape, Material, Mesh, Picture, PictureOptions, RayTraced, Scene, Shading, Technique, render,
 };
 
-use crate::common::{context, lamp, points, ray_traced, rectangle, see};
+use crate::common::{context, hard_shadow_map, lamp, points, ray_traced, rectangle, see};
 
 fn plate(z: f64, half: f64) -> Mesh {
     let corners = [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]];
@@ -23,6 +23,18 @@ fn a_ceiling_behind_a_lamp_hides_nothing_of_it() {
     // A plate that cuts the lamp hides what lies above it.
     let cut = see(&lamp_under(1.2), std::slice::from_ref(&light), &receivers, &ray_traced(256));
     assert!([1, 3].iter().all(|&i: &usize| cut.values[i] < 0.9), "{:?}", cut.values);
+}
+
+#[test]
+fn what_lies_inside_a_lamp_casts_no_hard_shadow_either() {
+    let light = lamp(LightShape::Sphere { radius: 1.0 }, [0.0, 0.0, 3.0]);
+    let receivers = points(vec![[0.1, 0.0, 0.0], [0.7, -0.4, 0.1], [-3.0, 2.0, 0.2]]);
+    for (z, lit) in [(2.8, true), (1.5, false)] {
+        let scene = Scene::new(vec![plate(z, 0.8), plate(-2.0, 9.0)]).unwrap();
+        let seen = see(&scene, std::slice::from_ref(&light), &receivers, &hard_shadow_map(512));
+        assert_eq!(seen.values[..2], [f32::from(u8::from(lit)); 2], "plate at {z}");
+        assert_eq!(seen.values[2], 1.0, "beside the plate");
+    }
 }
 
 fn picture(scene: &Scene, lights: &[Light], technique: RayTraced, shading: Shading) -> Picture {
