@@ -7,6 +7,7 @@ It does not block light itself. ``world_from_light`` is a rotation and a transla
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass
 from typing import Any
@@ -22,12 +23,12 @@ from .errors import SceneError
 WHITE = (1.0, 1.0, 1.0)
 
 
-class Light(ByValue):
-    """Base of all lights."""
+class Light(ByValue, ABC):
+    """Base of all lights; only its kinds can be made."""
 
+    @abstractmethod
     def _built(self) -> _core.Light:
         """The checked light of the core."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -238,3 +238,8 @@ def test_exceptions_have_the_bases_that_python_users_catch():
     for error, base in bases.items():
         assert issubclass(error, base)
         assert issubclass(error, ss.SoftShadowError)
+
+
+def test_a_light_without_a_kind_cannot_be_made():
+    with pytest.raises(TypeError, match="abstract"):
+        ss.Light()

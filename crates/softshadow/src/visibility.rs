@@ -150,12 +150,7 @@ pub(crate) fn run(
         Receivers::Camera(camera) => ReceiverSource::Camera(camera),
         Receivers::Points(points) => ReceiverSource::Points(points),
     };
-    let wants = Wants {
-        standard_error: options.standard_error,
-        receivers: options.receivers,
-        sample_masks: options.sample_masks,
-        picture,
-    };
+    let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
     let most = receivers_per_block(
         technique,
         options,

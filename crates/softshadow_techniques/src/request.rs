@@ -41,8 +41,6 @@ impl ReceiverSource<'_> {
 pub struct Wants {
     /// The standard error of every value, where the technique has one.
     pub standard_error: bool,
-    /// Receivers as every technique used them.
-    pub receivers: bool,
     /// The mask of blocked samples of every receiver.
     pub sample_masks: bool,
     /// A picture.

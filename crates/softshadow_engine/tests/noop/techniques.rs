@@ -70,7 +70,7 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
             for receivers in [ReceiverSource::Camera(&camera), ReceiverSource::Points(&points)] {
                 for picture in [None, Some(Shading::Integrated), Some(Shading::Modulated)] {
                     for most in [usize::MAX, 100] {
-                        let wants = Wants { standard_error: true, sample_masks: true, receivers: true, picture };
+                        let wants = Wants { standard_error: true, sample_masks: true, picture };
                         let blocks = blocks(receivers.count(), receivers.row(), technique.halo_rows() as usize, most);
                         let (channels, host) = (3, engine.host());
                         let program = VisibilityProgram {

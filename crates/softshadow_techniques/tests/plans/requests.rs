@@ -82,7 +82,7 @@ impl Fixture {
     /// The whole grid.
     pub(crate) fn requests(&self) -> Vec<Request<'_>> {
         let mut grid = Vec::new();
-        let wants = |picture, all| Wants { standard_error: all, receivers: all, sample_masks: all, picture };
+        let wants = |picture, all| Wants { standard_error: all, sample_masks: all, picture };
         // First of all stages, first of a block, a middle one, the last.
         let places = [[true, true, true, true], [false, true, false, false], [false; 4], [false, false, true, true]];
         for scene in 0..self.scenes.len() {
