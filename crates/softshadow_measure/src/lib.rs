@@ -13,6 +13,8 @@
 //! | [`sphere_over_rectangle`], [`sphere_over_sphere_light`] | one true sphere | about 1e-11 | the scene holds a tessellated sphere: its silhouette lies inside by about 1/n² |
 //! | [`rectangle_visibility`] | any small mesh, rectangular light | about 1e-12 | the receiver lies exactly on a triangle it does not exclude (V jumps there) |
 //! | [`RayReference`] | any mesh, given samples | exact up to the samples marked grazing | it is read as an area: n samples only know V to about n^-3/4 |
+//! | [`OcclusionTracer`] | the same, many samples | none: the same float64 verdicts | receiver and sample lie in the plane of a triangle elsewhere; it marks nothing as grazing |
+//! | [`grazing`] | a sample of a float32 kernel that looks at projected edges | says which differences rounding excuses | the receiver lies in the light's plane |
 //! | [`converged_visibility`] | any mesh, any light | its own standard error | an umbra or a lit region is thinner than the strata: mean and spread can both miss it |
 //!
 //! [`compare`] turns two images into an [`ErrorReport`].
@@ -21,10 +23,13 @@ mod closed_form;
 mod error;
 mod exact_union;
 pub mod metrics;
+mod occlusion_tracer;
 mod polygon;
 pub mod ray_reference;
 mod receiver;
 mod sampling;
+#[cfg(test)]
+mod test_scenes;
 mod vector;
 
 pub use closed_form::{
@@ -34,6 +39,8 @@ pub use closed_form::{
 pub use error::MeasureError;
 pub use exact_union::{RectangleLight, rectangle_visibility};
 pub use metrics::{ErrorReport, ReferenceImage, RegionError, compare};
+pub use occlusion_tracer::OcclusionTracer;
+pub use ray_reference::projected_grazing::{ProjectedSample, ProjectedView, grazing, needed_roundings};
 pub use ray_reference::{RayReference, SampleVerdict};
 pub use receiver::{Receiver, Target, Triangle};
 pub use sampling::{Estimate, SamplingPlan, converged_visibility, t_quantile_975};

@@ -8,15 +8,18 @@
 //! light is for the caller to know.
 
 pub mod bounds;
+mod contact;
+pub mod projected_grazing;
 mod shadow_volume;
 
 use rayon::prelude::*;
 
 use crate::receiver::check_triangles;
-use crate::vector::{Vec3, abs, dot, sub};
+use crate::vector::{Vec3, abs, dot};
 use crate::{MeasureError, Receiver, Target, Triangle};
 use bounds::{HORIZON_ROUNDINGS, relative_bound};
-use shadow_volume::{Contact, ShadowVolume, TargetHull};
+use contact::Contact;
+use shadow_volume::{ShadowVolume, TargetHull};
 
 /// What the reference says about one sample from one receiver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,10 +41,7 @@ struct Ray {
 
 impl Ray {
     fn new(origin: Vec3, target: &Target) -> Self {
-        let (direction, at_infinity) = match target {
-            Target::Point(point) => (sub(*point, origin), false),
-            Target::Direction(direction) => (*direction, true),
-        };
+        let (direction, at_infinity) = target.seen_from(origin);
         Self { direction, magnitude: abs(direction), at_infinity }
     }
 }
@@ -138,7 +138,7 @@ fn block(ray: &Ray, beyond_horizon: Contact, candidates: &[ShadowVolume]) -> Con
 }
 
 fn verdict(blocked: Contact) -> SampleVerdict {
-    SampleVerdict { visible: !blocked.hit, grazing: blocked.possible && !blocked.certain }
+    SampleVerdict { visible: !blocked.hit, grazing: blocked.is_grazing() }
 }
 
 #[cfg(test)]

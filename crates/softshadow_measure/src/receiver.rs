@@ -2,6 +2,7 @@
 
 use crate::MeasureError;
 use crate::error::require_finite;
+use crate::vector::{Vec3, sub};
 
 /// Three corners in world space; two-sided, in any winding.
 pub type Triangle = [[f64; 3]; 3];
@@ -40,6 +41,14 @@ pub enum Target {
 }
 
 impl Target {
+    /// The way from `origin` to it, and whether it is at infinity.
+    pub(crate) fn seen_from(&self, origin: Vec3) -> (Vec3, bool) {
+        match self {
+            Self::Point(point) => (sub(*point, origin), false),
+            Self::Direction(direction) => (*direction, true),
+        }
+    }
+
     pub(crate) fn check(&self, index: usize) -> Result<(), MeasureError> {
         match self {
             Self::Point(point) => require_finite("target point", index, point),

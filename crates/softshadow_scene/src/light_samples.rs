@@ -214,7 +214,7 @@ fn record(shape: &LightShape, place: &LocalLight, p: DVec2) -> [f32; 4] {
 
 /// The factor by which a point of the unit disc is moved off the axis, at distance 1, so that equal areas of the disc become equal
 /// solid angles of a cap of height `cap` = 1 − cosine; `share` is the point's squared radius.
-fn cap_reach(cap: f64, share: f64) -> f64 {
+pub(crate) fn cap_reach(cap: f64, share: f64) -> f64 {
     (cap * (2.0 - share * cap)).sqrt() / (1.0 - share * cap)
 }
 

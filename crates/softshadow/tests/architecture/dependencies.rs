@@ -39,13 +39,14 @@ impl Dependencies {
 }
 
 /// What each crate may use of ours. A crate that is not named here is refused.
-const ALLOWED: [(&str, &[&str]); 9] = [
+const ALLOWED: [(&str, &[&str]); 10] = [
     ("softshadow_scene", &[]),
     ("softshadow_shaders", &[]),
     ("softshadow_measure", &["softshadow_scene"]),
     ("softshadow_plan", &["softshadow_shaders"]),
     ("softshadow_techniques", &["softshadow_plan", "softshadow_scene", "softshadow_shaders"]),
     ("softshadow_engine", &["softshadow_plan", "softshadow_shaders"]),
+    ("softshadow_native", &["softshadow_plan", "softshadow_scene"]),
     (
         "softshadow",
         &["softshadow_engine", "softshadow_measure", "softshadow_plan", "softshadow_scene", "softshadow_techniques"],

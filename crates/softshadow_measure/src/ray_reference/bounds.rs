@@ -27,6 +27,10 @@ pub const DETERMINANT_ROUNDINGS: f64 = 8.0;
 /// `n·(s − p)` with n, s and p exact: one difference, one product, two additions.
 pub const HORIZON_ROUNDINGS: f64 = 4.0;
 
+/// `n·(v − p)` for a stored unit normal n of a triangle: the length of the normal is in none of its signs, so that storing
+/// it, one difference, one product and two additions remain; and one for where the corner itself was rounded.
+pub const PLANE_ROUNDINGS: f64 = 6.0;
+
 /// The k·u of the bound, with a factor that covers both the terms of order u² and the rounding of the float64 evaluation.
 pub(crate) fn relative_bound(roundings: f64) -> f64 {
     const SECOND_ORDER: f64 = 1.0 + 1.0 / 524_288.0;

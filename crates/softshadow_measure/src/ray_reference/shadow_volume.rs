@@ -2,31 +2,9 @@
 
 use super::Ray;
 use super::bounds::{DETERMINANT_ROUNDINGS, relative_bound};
+use super::contact::{Contact, Determinants};
 use crate::Triangle;
 use crate::vector::{Vec3, abs, add, cross, dot, scale, sub};
-
-/// How one blocker meets one ray.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Contact {
-    /// The float64 answer.
-    pub(super) hit: bool,
-    /// Some float32 evaluation within the bounds finds a hit.
-    pub(super) possible: bool,
-    /// Every float32 evaluation within the bounds finds a hit.
-    pub(super) certain: bool,
-}
-
-impl Contact {
-    pub(super) const NONE: Self = Self { hit: false, possible: false, certain: false };
-
-    pub(super) fn or(self, other: Self) -> Self {
-        Self {
-            hit: self.hit || other.hit,
-            possible: self.possible || other.possible,
-            certain: self.certain || other.certain,
-        }
-    }
-}
 
 /// The box of all rays of one receiver.
 pub(super) struct TargetHull {
@@ -61,15 +39,19 @@ impl TargetHull {
 
 /// A linear function of the direction d with its rounding bound: `value·d ± (k·u) permanent·|d|`.
 #[derive(Clone, Copy)]
-struct Form {
+pub(super) struct Form {
     value: Vec3,
     permanent: Vec3,
 }
 
 impl Form {
     /// d ↦ d·(x×y).
-    fn cross(x: Vec3, y: Vec3) -> Self {
-        let (p, q) = (abs(x), abs(y));
+    pub(super) fn cross(x: Vec3, y: Vec3) -> Self {
+        Self::cross_of_sums([x, abs(x)], [y, abs(y)])
+    }
+
+    /// The same for vectors that are themselves sums, each given with the componentwise sum of absolute terms.
+    pub(super) fn cross_of_sums([x, p]: [Vec3; 2], [y, q]: [Vec3; 2]) -> Self {
         Self {
             value: cross(x, y),
             permanent: [p[1] * q[2] + p[2] * q[1], p[2] * q[0] + p[0] * q[2], p[0] * q[1] + p[1] * q[0]],
@@ -78,8 +60,13 @@ impl Form {
 
     /// Value and rounding bound for one direction, given with its componentwise magnitude.
     fn at(&self, direction: Vec3, magnitude: Vec3) -> [f64; 2] {
-        let bound = relative_bound(DETERMINANT_ROUNDINGS) * dot(self.permanent, magnitude);
-        [dot(self.value, direction), bound]
+        let [value, sum] = self.terms(direction, magnitude);
+        [value, relative_bound(DETERMINANT_ROUNDINGS) * sum]
+    }
+
+    /// The sum of its terms, and that of their absolute values.
+    pub(super) fn terms(&self, direction: Vec3, magnitude: Vec3) -> [f64; 2] {
+        [dot(self.value, direction), dot(self.permanent, magnitude)]
     }
 
     /// Middle and half width of an interval that holds value ± bound for every ray of the hull. The bound is widened by a
@@ -151,20 +138,7 @@ impl ShadowVolume {
         }
         let depth = self.depth.at(ray.direction, ray.magnitude);
         let volume = [self.volume, self.volume_bound];
-        let mirrored = |x: [f64; 2]| [-x[0], x[1]];
-        let front = positive_contact(edges, depth, volume, ray.at_infinity);
-        let back = positive_contact(edges.map(mirrored), mirrored(depth), mirrored(volume), ray.at_infinity);
-        front.or(back)
+        let excess = (!ray.at_infinity).then(|| [volume[0] - depth[0], volume[1] + depth[1]]);
+        Determinants { edges, depth, volume, excess }.contact()
     }
-}
-
-/// The contact under the assumption that all determinants are positive; each is a value with its bound.
-fn positive_contact(edges: [[f64; 2]; 3], depth: [f64; 2], volume: [f64; 2], at_infinity: bool) -> Contact {
-    let holds = |slack: f64| {
-        edges.iter().all(|[e, bound]| e + slack * bound >= 0.0)
-            && depth[0] + slack * depth[1] > 0.0
-            && volume[0] + slack * volume[1] > 0.0
-            && (at_infinity || volume[0] - depth[0] < slack * (volume[1] + depth[1]))
-    };
-    Contact { hit: holds(0.0), possible: holds(1.0), certain: holds(-1.0) }
 }

@@ -1,20 +1,7 @@
 //! The cull changes no verdict, and the verdicts of single blockers are what the bounds say.
 
 use super::*;
-
-/// A few generators are enough to place triangles at random; no dependency for that.
-fn uniforms(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let mixed = (state ^ (state >> 29)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        (mixed >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
-fn float32_vector(next: &mut impl FnMut() -> f64, size: f64) -> Vec3 {
-    std::array::from_fn(|_| f64::from(((next() - 0.5) * size) as f32))
-}
+use crate::test_scenes::{add_offset, beyond_an_edge, float32_vector, hostile_mesh, uniforms, vertex};
 
 impl RayReference {
     fn verdicts_without_cull(&self, receiver: &Receiver, targets: &[Target]) -> Vec<SampleVerdict> {
@@ -27,37 +14,6 @@ impl RayReference {
             })
             .collect()
     }
-}
-
-/// Small and large, near and far, slivers, edge-on and touching triangles around the origin.
-fn hostile_mesh(next: &mut impl FnMut() -> f64, count: usize) -> Vec<Triangle> {
-    (0..count)
-        .map(|index| {
-            let size = 10_f64.powf(next() * 5.0 - 4.0);
-            let center = float32_vector(next, 6.0);
-            let mut corners: Triangle = std::array::from_fn(|_| vertex(add_offset(center, next, size)));
-            match index % 7 {
-                0 => corners[2] = corners[1],
-                1 => corners.iter_mut().for_each(|corner| corner[2] = 0.0),
-                2 => corners[0] = [0.0; 3],
-                _ => {}
-            }
-            corners
-        })
-        .collect()
-}
-
-fn add_offset(center: Vec3, next: &mut impl FnMut() -> f64, size: f64) -> Vec3 {
-    crate::vector::add(center, float32_vector(next, size))
-}
-
-/// Twice as far as the middle of an edge.
-fn beyond_an_edge([from, to, _]: &Triangle, origin: Vec3) -> Vec3 {
-    crate::vector::sub(crate::vector::add(*from, *to), origin)
-}
-
-fn vertex(at: Vec3) -> Vec3 {
-    at.map(|value| f64::from(value as f32))
 }
 
 #[test]

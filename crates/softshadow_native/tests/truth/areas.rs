@@ -1,0 +1,178 @@
+//! Exact areas against exact unions of polygons, and the samples that decide whether to believe them.
+
+use glam::{DVec2, DVec3};
+use softshadow_measure::{RectangleLight, disc_over_disc, rectangle_visibility};
+use softshadow_native::depth_complexity::{Coverage, Receiver, Seen};
+use softshadow_scene::LightShape;
+
+use crate::scene::{Random, Setup, Soup};
+use crate::shapes::{above, aimed, ball, bracket, leaves, plate, soup, square, torus};
+
+const WHOLE: f64 = 1e-5;
+
+fn see(setup: &Setup, receiver: &Receiver) -> Seen<1> {
+    setup.technique(Coverage::Exact, true).see(receiver)
+}
+
+/// A rectangle `[low, high]` of a light's own plane, as the exact union knows it.
+fn part(setup: &Setup, low: [f64; 2], high: [f64; 2]) -> RectangleLight {
+    let place = setup.light.local(&setup.local);
+    let (low, high) = (DVec2::from(low) * place.length_scale, DVec2::from(high) * place.length_scale);
+    let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
+    let center = place.center + place.x_axis * middle.x + place.y_axis * middle.y;
+    let [u, v] = [place.x_axis * half.x, place.y_axis * half.y];
+    RectangleLight::new(center.into(), u.into(), v.into(), place.emission.into()).unwrap()
+}
+
+/// The exact visibility of a light made of rectangles.
+fn exact(setup: &Setup, parts: &[([f64; 2], [f64; 2])], receiver: &Receiver) -> f64 {
+    let receiver = Setup::true_receiver(receiver);
+    let area = |(low, high): &([f64; 2], [f64; 2])| (high[0] - low[0]) * (high[1] - low[1]);
+    let seen = |p: &([f64; 2], [f64; 2])| {
+        rectangle_visibility(&part(setup, p.0, p.1), &setup.exact, &receiver).unwrap() * area(p)
+    };
+    parts.iter().map(seen).sum::<f64>() / parts.iter().map(area).sum::<f64>()
+}
+
+/// What came of the receivers in the penumbra.
+#[derive(Debug, Default)]
+struct Answers {
+    penumbra: usize,
+    /// Where areas answered.
+    by_area: usize,
+    /// Where they were wrong by more than 1e-5: layers overlap between the samples.
+    fooled: usize,
+    worst: f64,
+    /// Sums of squared errors where areas answered: of the areas, and of the samples in their place.
+    squared: f64,
+    squared_sampled: f64,
+    worst_sampled: f64,
+}
+
+impl Answers {
+    fn share_fooled(&self) -> f64 {
+        self.fooled as f64 / self.by_area as f64
+    }
+
+    /// Root mean square error by area, over that of the samples.
+    fn gain(&self) -> f64 {
+        (self.squared / self.squared_sampled).sqrt()
+    }
+}
+
+fn judge(setup: &Setup, parts: &[([f64; 2], [f64; 2])], random: &mut Random, count: usize) -> Answers {
+    let mut answers = Answers::default();
+    for _ in 0..count {
+        let receiver = Receiver { position: random.point([-1.0, -1.0, -0.9], [1.0, 1.0, -0.6]), ..Receiver::default() };
+        let seen = see(setup, &receiver);
+        let truth = exact(setup, parts, &receiver);
+        if !(0.002..0.998).contains(&truth) {
+            continue;
+        }
+        answers.penumbra += 1;
+        answers.worst_sampled = answers.worst_sampled.max((f64::from(seen.sampled) - truth).abs());
+        if let Some(area) = seen.by_area {
+            answers.by_area += 1;
+            let error = (f64::from(area) - truth).abs();
+            answers.worst = answers.worst.max(error);
+            answers.fooled += usize::from(error > WHOLE);
+            answers.squared += error * error;
+            answers.squared_sampled += (f64::from(seen.sampled) - truth).powi(2);
+        }
+    }
+    answers
+}
+
+const SQUARE: [([f64; 2], [f64; 2]); 1] = [([-0.5, -0.5], [0.5, 0.5])];
+
+#[test]
+fn one_convex_body_is_never_fooled() {
+    let mut random = Random(31);
+    for (name, mesh) in [("ball", soup(&ball([0.0; 3], 0.35, 3))), ("plate", plate([0.1, 0.0, 0.0], 0.3))] {
+        let setup = Setup::new(mesh, aimed(square(1.0), [0.3, 0.4, 3.0], [0.0; 3]), 64);
+        let answers = judge(&setup, &SQUARE, &mut random, 3000);
+        assert!(answers.penumbra > 300, "{name}: {answers:?}");
+        assert_eq!((answers.fooled, answers.by_area), (0, answers.penumbra), "{name}: {answers:?}");
+        assert!(answers.worst_sampled > 0.02, "samples are far worse: {answers:?}");
+    }
+}
+
+#[test]
+fn layers_between_the_samples_fool_some_and_cost_little() {
+    let mut random = Random(32);
+    // Largest share of areas that are fooled, and largest error by area relative to that of 64 samples in the same places.
+    let cases: [(&str, Soup, f64, f64); 3] = [
+        ("torus", soup(&torus([0.0, 0.0, 0.1], 0.35, 0.12, 40, 20)), 0.1, 0.01),
+        (
+            "two balls",
+            [soup(&ball([-0.2, 0.0, 0.0], 0.25, 3)), soup(&ball([0.2, 0.1, 0.3], 0.25, 3))].concat(),
+            0.1,
+            0.1,
+        ),
+        ("leaves", leaves(&mut Random(33), 60, 0.25, [-0.5, -0.5, -0.2], [0.5, 0.5, 0.6]), 0.6, 0.5),
+    ];
+    for (name, mesh, most_fooled, most_error) in cases {
+        let setup = Setup::new(mesh, aimed(square(1.0), [0.3, 0.4, 3.0], [0.0; 3]), 64);
+        let answers = judge(&setup, &SQUARE, &mut random, 3000);
+        assert!(answers.by_area * 2 > answers.penumbra, "{name}: {answers:?}");
+        assert!(answers.share_fooled() < most_fooled && answers.gain() < most_error, "{name}: {answers:?}");
+        // What the sampler's bound allows: 2·64^-3/4, beside the samples' own error.
+        assert!(answers.worst < 0.0884 + answers.worst_sampled, "{name}: {answers:?}");
+    }
+}
+
+#[test]
+fn concave_lights_are_sums_of_their_sides() {
+    let mut random = Random(34);
+    let setup = Setup::new(soup(&ball([0.0; 3], 0.35, 3)), aimed(bracket(1.0), [0.3, 0.4, 3.0], [0.0; 3]), 64);
+    let parts = [([-0.5, -0.5], [0.6, -0.15]), ([-0.5, -0.15], [-0.1, 0.45])];
+    let answers = judge(&setup, &parts, &mut random, 3000);
+    assert!(answers.by_area > 200 && answers.fooled == 0, "{answers:?}");
+}
+
+#[test]
+fn discs_have_arcs() {
+    // A disc of many corners over a disc of light, receiver far below, both on one axis or off it.
+    let corners = 4000;
+    let occluder = |radius: f64| -> Soup {
+        let at = |i: usize| {
+            let angle = i as f64 / f64::from(corners) * std::f64::consts::TAU;
+            [(angle.cos() * radius) as f32, (angle.sin() * radius) as f32, 0.0]
+        };
+        (1..corners as usize - 1).map(|i| [at(0), at(i), at(i + 1)]).collect()
+    };
+    let light = above(LightShape::Disc { radius: 0.4 }, [0.0, 0.0, 1.0]);
+    for radius in [0.05, 0.2, 0.35] {
+        let setup = Setup::new(occluder(radius), light.clone(), 64);
+        for step in 0..60 {
+            let x = f64::from(step) * 0.013;
+            let receiver = Receiver { position: [x as f32, 0.0, -1.0], ..Receiver::default() };
+            let seen = see(&setup, &receiver);
+            // From z = −1 the occluder at 0 is twice as large on the light at 1, and its centre moves by −x.
+            let truth = disc_over_disc(x, radius * 2.0, 0.4).unwrap();
+            let area = seen.by_area.expect("one layer");
+            // A polygon of n corners is smaller than its circle by 2 π² / (3 n²).
+            assert!((f64::from(area) - truth).abs() < 2e-5, "{radius} {x}: {area} {truth}");
+        }
+    }
+}
+
+#[test]
+fn areas_are_silent_where_they_would_be_wrong() {
+    let mesh = || soup(&ball([0.0; 3], 0.3, 2));
+    let under = Receiver { position: [0.1, 0.05, -0.8], ..Receiver::default() };
+    let lit = |shape| Setup::new(mesh(), aimed(shape, [0.3, 0.4, 3.0], [0.0; 3]), 64);
+    assert!(see(&lit(square(1.0)), &under).by_area.is_some());
+    assert!(see(&lit(LightShape::Sphere { radius: 0.5 }), &under).by_area.is_none(), "solid angle is no area");
+    assert!(see(&lit(LightShape::Sun { angular_diameter: 0.3 }), &under).by_area.is_none(), "nor on a wide sun");
+    assert!(see(&lit(LightShape::Sun { angular_diameter: 0.01 }), &under).by_area.is_some());
+    // A receiver whose own plane crosses the light.
+    let normal = Some(DVec3::new(0.99, 0.0, -0.08).normalize().as_vec3().to_array());
+    let tilted = see(&lit(square(1.0)), &Receiver { normal, ..under });
+    assert!(tilted.hidden[0].count_ones() > 0 && tilted.by_area.is_none());
+    // Two layers that overlap.
+    let two = [plate([0.0, 0.0, 0.0], 0.2), plate([0.1, 0.1, 0.3], 0.2)].concat();
+    let setup = Setup::new(two, above(square(1.0), [0.0, 0.0, 3.0]), 64);
+    let overlapped = see(&setup, &Receiver { position: [0.0, 0.0, -0.9], ..Receiver::default() });
+    assert!(overlapped.by_area.is_none() && overlapped.sampled < 0.9);
+}
