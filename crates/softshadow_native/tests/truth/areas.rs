@@ -10,6 +10,9 @@ use crate::shapes::{above, aimed, ball, bracket, leaves, plate, soup, square, to
 
 const WHOLE: f64 = 1e-5;
 
+/// Corners `[low, high]` of the rectangles that a light consists of.
+pub(crate) type Parts = &'static [([f64; 2], [f64; 2])];
+
 fn see(setup: &Setup, receiver: &Receiver) -> Seen<1> {
     setup.technique(Coverage::Exact, true).see(receiver)
 }
@@ -25,7 +28,7 @@ fn part(setup: &Setup, low: [f64; 2], high: [f64; 2]) -> RectangleLight {
 }
 
 /// The exact visibility of a light made of rectangles.
-fn exact(setup: &Setup, parts: &[([f64; 2], [f64; 2])], receiver: &Receiver) -> f64 {
+fn exact(setup: &Setup, parts: Parts, receiver: &Receiver) -> f64 {
     let receiver = Setup::true_receiver(receiver);
     let area = |(low, high): &([f64; 2], [f64; 2])| (high[0] - low[0]) * (high[1] - low[1]);
     let seen = |p: &([f64; 2], [f64; 2])| {
@@ -36,61 +39,82 @@ fn exact(setup: &Setup, parts: &[([f64; 2], [f64; 2])], receiver: &Receiver) -> 
 
 /// What came of the receivers in the penumbra.
 #[derive(Debug, Default)]
-struct Answers {
-    penumbra: usize,
+pub(crate) struct Answers {
+    pub(crate) penumbra: usize,
     /// Where areas answered.
-    by_area: usize,
+    pub(crate) by_area: usize,
     /// Where they were wrong by more than 1e-5: layers overlap between the samples.
-    fooled: usize,
-    worst: f64,
+    pub(crate) fooled: usize,
+    pub(crate) worst: f64,
     /// Sums of squared errors where areas answered: of the areas, and of the samples in their place.
-    squared: f64,
-    squared_sampled: f64,
+    pub(crate) squared: f64,
+    pub(crate) squared_sampled: f64,
     worst_sampled: f64,
 }
 
 impl Answers {
-    fn share_fooled(&self) -> f64 {
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            penumbra: self.penumbra + other.penumbra,
+            by_area: self.by_area + other.by_area,
+            fooled: self.fooled + other.fooled,
+            worst: self.worst.max(other.worst),
+            squared: self.squared + other.squared,
+            squared_sampled: self.squared_sampled + other.squared_sampled,
+            worst_sampled: self.worst_sampled.max(other.worst_sampled),
+        }
+    }
+
+    pub(crate) fn share_fooled(&self) -> f64 {
         self.fooled as f64 / self.by_area as f64
     }
 
     /// Root mean square error by area, over that of the samples.
-    fn gain(&self) -> f64 {
+    pub(crate) fn gain(&self) -> f64 {
         (self.squared / self.squared_sampled).sqrt()
     }
 }
 
-fn judge(setup: &Setup, parts: &[([f64; 2], [f64; 2])], random: &mut Random, count: usize) -> Answers {
-    let mut answers = Answers::default();
-    for _ in 0..count {
-        let receiver = Receiver { position: random.point([-1.0, -1.0, -0.9], [1.0, 1.0, -0.6]), ..Receiver::default() };
-        let seen = see(setup, &receiver);
-        let truth = exact(setup, parts, &receiver);
-        if !(0.002..0.998).contains(&truth) {
-            continue;
-        }
-        answers.penumbra += 1;
-        answers.worst_sampled = answers.worst_sampled.max((f64::from(seen.sampled) - truth).abs());
-        if let Some(area) = seen.by_area {
-            answers.by_area += 1;
-            let error = (f64::from(area) - truth).abs();
-            answers.worst = answers.worst.max(error);
-            answers.fooled += usize::from(error > WHOLE);
-            answers.squared += error * error;
-            answers.squared_sampled += (f64::from(seen.sampled) - truth).powi(2);
-        }
+/// What one receiver adds.
+pub(crate) fn judge_area(setup: &Setup, parts: Parts, receiver: &Receiver) -> Answers {
+    let seen = see(setup, receiver);
+    // Whoever sees all or nothing by far more samples is not in the penumbra: an exact union there would only take time.
+    if seen.silhouettes == 0 && (seen.hidden[0] == 0 || seen.hidden[0] == !0) {
+        return Answers::default();
+    }
+    let truth = exact(setup, parts, receiver);
+    if !(0.002..0.998).contains(&truth) {
+        return Answers::default();
+    }
+    let sampled = (f64::from(seen.sampled) - truth).abs();
+    let mut answers = Answers { penumbra: 1, worst_sampled: sampled, ..Answers::default() };
+    if let Some(area) = seen.by_area {
+        let error = (f64::from(area) - truth).abs();
+        answers.by_area = 1;
+        answers.fooled = usize::from(error > WHOLE);
+        answers.worst = error;
+        answers.squared = error * error;
+        answers.squared_sampled = sampled * sampled;
     }
     answers
 }
 
-const SQUARE: [([f64; 2], [f64; 2]); 1] = [([-0.5, -0.5], [0.5, 0.5])];
+fn judge(setup: &Setup, parts: Parts, random: &mut Random, count: usize) -> Answers {
+    let at = |random: &mut Random| random.point([-1.0, -1.0, -0.9], [1.0, 1.0, -0.6]);
+    (0..count)
+        .map(|_| judge_area(setup, parts, &Receiver { position: at(random), ..Receiver::default() }))
+        .fold(Answers::default(), Answers::plus)
+}
+
+/// A square light of size 1.
+pub(crate) const SQUARE: Parts = &[([-0.5, -0.5], [0.5, 0.5])];
 
 #[test]
 fn one_convex_body_is_never_fooled() {
     let mut random = Random(31);
     for (name, mesh) in [("ball", soup(&ball([0.0; 3], 0.35, 3))), ("plate", plate([0.1, 0.0, 0.0], 0.3))] {
         let setup = Setup::new(mesh, aimed(square(1.0), [0.3, 0.4, 3.0], [0.0; 3]), 64);
-        let answers = judge(&setup, &SQUARE, &mut random, 3000);
+        let answers = judge(&setup, SQUARE, &mut random, 3000);
         assert!(answers.penumbra > 300, "{name}: {answers:?}");
         assert_eq!((answers.fooled, answers.by_area), (0, answers.penumbra), "{name}: {answers:?}");
         assert!(answers.worst_sampled > 0.02, "samples are far worse: {answers:?}");
@@ -113,7 +137,7 @@ fn layers_between_the_samples_fool_some_and_cost_little() {
     ];
     for (name, mesh, most_fooled, most_error) in cases {
         let setup = Setup::new(mesh, aimed(square(1.0), [0.3, 0.4, 3.0], [0.0; 3]), 64);
-        let answers = judge(&setup, &SQUARE, &mut random, 3000);
+        let answers = judge(&setup, SQUARE, &mut random, 3000);
         assert!(answers.by_area * 2 > answers.penumbra, "{name}: {answers:?}");
         assert!(answers.share_fooled() < most_fooled && answers.gain() < most_error, "{name}: {answers:?}");
         // What the sampler's bound allows: 2·64^-3/4, beside the samples' own error.
@@ -125,8 +149,8 @@ fn layers_between_the_samples_fool_some_and_cost_little() {
 fn concave_lights_are_sums_of_their_sides() {
     let mut random = Random(34);
     let setup = Setup::new(soup(&ball([0.0; 3], 0.35, 3)), aimed(bracket(1.0), [0.3, 0.4, 3.0], [0.0; 3]), 64);
-    let parts = [([-0.5, -0.5], [0.6, -0.15]), ([-0.5, -0.15], [-0.1, 0.45])];
-    let answers = judge(&setup, &parts, &mut random, 3000);
+    let parts = &[([-0.5, -0.5], [0.6, -0.15]), ([-0.5, -0.15], [-0.1, 0.45])];
+    let answers = judge(&setup, parts, &mut random, 3000);
     assert!(answers.by_area > 200 && answers.fooled == 0, "{answers:?}");
 }
 

@@ -239,6 +239,33 @@ fn inside_a_closed_occluder_nothing_is_seen() {
 }
 
 #[test]
+fn receivers_exactly_on_faces_edges_and_corners_see_past_them() {
+    // Given neither a normal nor a triangle. Seen edge-on a face hides nothing, as for rays; an edge through the receiver has no image.
+    let mut random = Random(24);
+    let face = [[-0.5, -0.5, -0.5], [0.5, -0.5, 0.0], [0.0, 0.5, 0.0]];
+    let setup = Setup::new([vec![face], plate([0.0, 0.0, 0.5], 0.2)].concat(), lamp(), 64);
+    let at = |i: u32, j: u32| -> [f32; 3] {
+        let (u, v) = (i as f32 / 64.0, j as f32 / 64.0);
+        std::array::from_fn(|k| face[0][k] + (face[1][k] - face[0][k]) * u + (face[2][k] - face[0][k]) * v)
+    };
+    expect_none("in a face's plane", &setup, (0..128).flat_map(|i| (0..64).map(move |j| at(i, j))));
+    // On a corner of a leaf. Rays are told which leaf that is; in float64, too, its determinants are noise there.
+    let mesh = leaves(&mut random, 4000, 0.1, [-0.5, -0.5, -0.5], [0.5, 0.5, 0.5]);
+    let setup = Setup::new(mesh.clone(), lamp(), 64);
+    let (mut hidden, mut differing) = (0, 0);
+    for (index, leaf) in mesh.iter().enumerate() {
+        for position in *leaf {
+            let free = Receiver { position, ..Receiver::default() };
+            let rays = setup.hidden_by_rays(&Receiver { triangle: Some(index as u32), ..free });
+            hidden += rays.count_ones();
+            differing += (setup.see(&free).hidden[0] ^ rays).count_ones();
+        }
+    }
+    assert!(hidden > 100_000);
+    assert_eq!(differing, 0);
+}
+
+#[test]
 fn hundreds_of_layers_are_counted() {
     let mut random = Random(19);
     let mut stack = Soup::new();

@@ -14,8 +14,9 @@ use softshadow_native::depth_complexity::view::Sight;
 use softshadow_native::depth_complexity::{Coverage, CoverageTables, LightView, Receiver, Seen};
 use softshadow_scene::{LightShape, LocalScene, Material, Mesh, Scene, procedural, scene_file};
 
+use crate::areas::{Answers, SQUARE, judge_area};
 use crate::scene::{Random, Setup, Soup, on_triangle, opaque};
-use crate::shapes::{aimed, shapes};
+use crate::shapes::{aimed, shapes, square};
 
 const MESHES: [&str; 6] = ["stanford-bunny", "teapot", "cow", "spot", "beetle", "fandisk"];
 /// On the casters, on the ground, near the casters (10^-6 to 10^-1 away), all around.
@@ -345,4 +346,45 @@ fn ten_million_receivers_have_no_faults() {
     }
     expect_no_faults(&table, &total);
     assert!(total.receivers >= 10_000_000);
+}
+
+/// Areas on real meshes against exact unions of polygons, in the penumbra on and around casters.
+#[test]
+#[ignore = "minutes; part of `make evidence`"]
+fn areas_on_real_meshes() {
+    assert!(mesh_folder().is_some(), "set SOFTSHADOW_MESHES");
+    let mut table = String::from(
+        "| casters and ground | in penumbra | by area | fooled | RMSE by area | RMSE of 64 samples there | worst by area |\n\
+         |---|---|---|---|---|---|---|\n",
+    );
+    for name in MESHES {
+        let (eye, target) = ([1.5, 3.5, 1.0], [0.0, 0.3, 0.0]);
+        let place = place(&on_ground(name), square(1.0), eye, target, 1.2);
+        let answers = (0..40_000)
+            .into_par_iter()
+            .map(|i| {
+                let mut random = Random(0xD134_2543_DE82_EF95 ^ (i as u64) << 20);
+                let receiver = loop {
+                    if let Some(receiver) = place.receiver(i % KINDS, &mut random) {
+                        break receiver;
+                    }
+                };
+                judge_area(&place.setup, SQUARE, &receiver)
+            })
+            .reduce(Answers::default, Answers::plus);
+        let rms = |squared: f64| (squared / answers.by_area as f64).sqrt();
+        table += &format!(
+            "| {name} | {} | {:.1} % | {:.1} % | {:.5} | {:.5} | {:.4} |\n",
+            answers.penumbra,
+            100.0 * answers.by_area as f64 / answers.penumbra as f64,
+            100.0 * answers.share_fooled(),
+            rms(answers.squared),
+            rms(answers.squared_sampled),
+            answers.worst,
+        );
+        assert!(answers.penumbra > 500 && answers.gain() < 0.35, "{table}{answers:?}");
+    }
+    if let Some(path) = std::env::var_os("SOFTSHADOW_AREA_TABLE") {
+        std::fs::write(path, &table).unwrap();
+    }
 }
