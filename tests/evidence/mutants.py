@@ -1,8 +1,8 @@
 """One change at a time to the silhouette edges, each of which the tests have to notice.
 
-Every mutant is a line of ``crates/`` written wrong: a sign flipped, an edge dropped, h for g, an epsilon at w = 0. It is
-built in a copy of the work tree, and the tests of ``softshadow_scene`` and ``softshadow_native`` must fail. A mutant that
-survives is a hole in the tests.
+Every mutant is a line of ``crates/`` written wrong: a sign flipped, an edge dropped, h for g, an epsilon at w = 0. It
+is built in a copy of the work tree, and the tests of ``softshadow_scene`` and ``softshadow_native`` must fail. A mutant
+that survives is a hole in the tests.
 """
 
 from __future__ import annotations
