@@ -41,22 +41,15 @@ impl Layers {
     }
 }
 
-/// Roundings of a height over a face's plane: the normal, the way, a product, two sums; in units of 2^-24 of the sum of the absolute
-/// products.
-const HEIGHT_ROUNDINGS: f32 = 5.0 * 5.960_464_5e-8;
-
 /// +1 where the receiver sees the face's canonical winding counter-clockwise on the light, −1 clockwise, 0 edge-on: such a face hides
 /// nothing. Decided by the plane of the whole triangle, once for all its edges.
 ///
-/// Edge-on is whatever rounding cannot tell from it. So a receiver on a corner or an edge of a mesh, where the faces around it have no
-/// image at all, sees past these faces as rays do, instead of taking a side that no edge confirms.
+/// In the plane is whoever is no farther off it than the face's own corners are by rounding. So a receiver on a corner of a mesh sees
+/// past the faces that meet there, as rays do: two of their edges have no image, and no side could be right for the third.
 #[must_use]
 pub fn side(view: &LightView, face: &Face) -> i32 {
-    let normal = Vec3::from(face.normal);
-    let way = view.position - Vec3::from(face.point);
-    let height = normal.dot(way);
-    let noise = HEIGHT_ROUNDINGS * normal.abs().dot(way.abs());
-    i32::from(height > noise) - i32::from(height < -noise)
+    let height = Vec3::from(face.normal).dot(view.position - Vec3::from(face.point));
+    i32::from(height > face.flatness) - i32::from(height < -face.flatness)
 }
 
 /// `D` left of an edge minus `D` right of it.

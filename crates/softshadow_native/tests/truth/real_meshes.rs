@@ -313,7 +313,7 @@ fn run(receivers: usize) -> (String, Tally) {
             let place = place(&scene, shape, eye, target, top);
             let tables = CoverageTables::new(&place.setup.samples, 2048, 512, 512);
             let share = if shape_name == "rectangle" { 0.6 } else { 0.1 };
-            let count = (receivers as f64 / names.len() as f64 * share / KINDS as f64).ceil() as usize;
+            let count = (receivers as f64 / (MESHES.len() + 1) as f64 * share / KINDS as f64).ceil() as usize;
             let line = (0..KINDS)
                 .fold(Tally::default(), |sum, kind| sum.plus(place.judge(kind, count, kind as u64 + 1, &tables)));
             table += &line.row(&format!("{name}, {shape_name}"));

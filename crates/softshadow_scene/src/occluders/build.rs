@@ -1,6 +1,6 @@
 //! From triangles to faces, edges and a hierarchy over each.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::cut::{Front, Polygon, in_front, touches, widen};
 use super::{
@@ -68,7 +68,8 @@ impl Occluders {
                 LightBoundary::Ball { .. } | LightBoundary::None => Polygon::whole(&corners),
             };
             if polygon.corners().len() >= 3 {
-                occluders.faces.push(Face { normal, triangle, point: corners[0], attenuation, sides: [NO_SIDE; 4] });
+                let (point, flatness) = (corners[0], flatness(normal, &corners));
+                occluders.faces.push(Face { normal, triangle, point, attenuation, flatness, sides: [NO_SIDE; 4] });
                 polygons.push(polygon);
             }
         }
@@ -140,6 +141,13 @@ fn canonical(triangle: &[[f32; 3]; 3]) -> [[f32; 3]; 3] {
     let mut corners = triangle.map(|corner| corner.map(|x| x + 0.0));
     corners.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2])));
     corners
+}
+
+/// The largest height of a corner over the plane through the first.
+fn flatness(normal: [f32; 3], [point, b, c]: &[[f32; 3]; 3]) -> f32 {
+    // The very operations with which a kernel takes a receiver's height over the plane: on a corner it then finds no more than this.
+    let height = |corner: &[f32; 3]| Vec3::from(normal).dot(Vec3::from(*corner) - Vec3::from(*point)).abs();
+    height(b).max(height(c))
 }
 
 /// The plane's side that sees the corners run counterclockwise; `None` without an area. The exponents of float32 fit four times

@@ -42,8 +42,7 @@ pub enum LightBoundary {
 }
 
 /// A triangle, or the part of one in front of the light: a convex polygon of three or four corners.
-#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Face {
     /// Unit normal of the whole triangle, by its corners in canonical order. One sign of `normal·(p − point)` serves all sides.
     pub normal: [f32; 3],
@@ -53,14 +52,16 @@ pub struct Face {
     pub point: [f32; 3],
     /// [`OPAQUE`], or the units of one crossing.
     pub attenuation: u32,
+    /// How far rounding puts the whole triangle's own corners off its plane: the largest `|normal·(corner − point)|` in float32. What is
+    /// no higher over the plane than that is in it.
+    pub flatness: f32,
     /// Sides in the order of the canonical winding: `edge << 1 | backward`; [`NO_SIDE`] after the last. Backward: the winding runs
     /// from the edge's high corner to its low one.
     pub sides: [u32; 4],
 }
 
 /// An edge with the faces that share it.
-#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OccluderEdge {
     /// The corner that comes first by position.
     pub low: [f32; 3],
