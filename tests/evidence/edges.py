@@ -20,13 +20,13 @@ def against_rays() -> tuple[list[str], bool]:
         passed = subprocess.run(command.split(), cwd=ROOT, env=environment).returncode == 0
         tables = [path.read_text() if path.is_file() else "no table was made\n" for path in (samples, areas)]
     return [
-        "Scalar float32 (`softshadow_native`), 64 samples a receiver: receivers on casters, on the ground, "
-        "1e-6 to 1e-1 off the casters, and all around, on unit-high models under a light as large as they "
-        "are. Where edges and rays differ, the sample is *grazing* if an exact determinant of its triangle "
-        "lies below the bound of rounding (28 roundings; the most that one needed stands beside), else a "
-        "*fault*. Tables (2,048 directions, 512 × 512 lines) are compared with exact coverage on every eighth "
-        "receiver: the share of samples that moved, all within a table's cell of an edge, else a *table "
-        "fault*.",
+        "Scalar float32 (`softshadow_native`), 64 samples a receiver: receivers on casters, on their edges "
+        "and corners, on the ground, 1e-6 to 1e-1 off the casters, and all around, on unit-high models under "
+        "a light as large as they are. Where edges and rays differ, the sample is *grazing* if an exact "
+        "determinant of its triangle lies below the bound of rounding (28 roundings; the most that one needed "
+        "stands beside), else a *fault*. *Gross*: receivers with more than 8 grazing samples. Tables (2,048 "
+        "directions, 512 × 512 lines) are compared with exact coverage on every eighth receiver: the share of "
+        "samples that moved, all within a table's cell of an edge, else a *table fault*.",
         "",
         *tables[0].splitlines(),
         "",

@@ -38,7 +38,12 @@ MUTANTS = [
         "i32::from(height > face.flatness) - i32::from(height < -face.flatness)",
         "i32::from(height < -face.flatness) - i32::from(height > face.flatness)",
     ),
-    Mutant("edge-on faces take a side", f"{SCENE}/occluders/build.rs", "height(b).max(height(c))", "0.0 * height(b).max(height(c))"),
+    Mutant(
+        "edge-on faces take a side",
+        f"{SCENE}/occluders/build.rs",
+        "height(b).max(height(c))",
+        "0.0 * height(b).max(height(c))",
+    ),
     Mutant("winding at an edge ignored", f"{MODEL}/face.rs", "if incidence & 1 == 0 { 1 } else { -1 }", "1"),
     Mutant(
         "own triangle not left out of the edges",

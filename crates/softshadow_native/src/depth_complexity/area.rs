@@ -27,22 +27,6 @@ impl AreaSum {
     }
 }
 
-/// Area of a light, in the units of its outline.
-#[must_use]
-pub fn area_of(outline: &Outline) -> f64 {
-    match outline {
-        Outline::Disc(_) => std::f64::consts::PI,
-        Outline::Polygon(corners) => {
-            let next = corners.iter().cycle().skip(1);
-            corners
-                .iter()
-                .zip(next)
-                .map(|(a, b)| Vec2::from(*a).as_dvec2().perp_dot(Vec2::from(*b).as_dvec2()) * 0.5)
-                .sum()
-        }
-    }
-}
-
 /// Area of the light between the directions `from` and `to` (counter-clockwise, less than a half turn) and beyond the line, which
 /// crosses both. `line·(x, y, 1)` is positive on the side of the origin, which is the reference point.
 #[must_use]

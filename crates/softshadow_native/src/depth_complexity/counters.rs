@@ -75,16 +75,18 @@ impl<const W: usize> Counters<W> {
         any
     }
 
-    /// The one value that all nonzero counters have; `None` if they differ or if there is none.
+    /// The one value that all nonzero counters of a mask have; `None` if they differ or if there is none.
     #[must_use]
-    pub fn single_value(&self) -> Option<i32> {
-        let any = self.nonzero();
+    pub fn single_value(&self, mask: &[u64; W]) -> Option<i32> {
+        let mut any = self.nonzero();
+        any.iter_mut().zip(mask).for_each(|(word, m)| *word &= m);
         let mut value = 0u32;
         for (bit, plane) in self.planes[..self.used].iter().enumerate() {
-            if *plane == any {
+            let here: [u64; W] = std::array::from_fn(|w| plane[w] & any[w]);
+            if here == any {
                 // The last plane stands for all above it.
                 value |= if bit + 1 == self.used { u32::MAX << bit } else { 1 << bit };
-            } else if *plane != [0; W] {
+            } else if here != [0; W] {
                 return None;
             }
         }
@@ -134,7 +136,7 @@ mod tests {
             }
             let mut different: Vec<i32> = plain.iter().copied().filter(|v| *v != 0).collect();
             different.dedup();
-            assert_eq!(counters.single_value(), (different.len() == 1).then(|| different[0]), "{different:?}");
+            assert_eq!(counters.single_value(&[!0; 2]), (different.len() == 1).then(|| different[0]), "{different:?}");
         }
     }
 
@@ -145,7 +147,7 @@ mod tests {
             let mut counters = Counters::<1>::filled(0);
             amounts.iter().for_each(|a| counters.add(&mask, *a));
             assert_eq!(counters.nonzero(), [0]);
-            assert_eq!(counters.single_value(), None);
+            assert_eq!(counters.single_value(&[!0; 1]), None);
         }
     }
 
@@ -153,11 +155,12 @@ mod tests {
     fn one_value_is_told_from_two() {
         let mut counters = Counters::<1>::filled(0);
         counters.add(&[0b0111], 2);
-        assert_eq!(counters.single_value(), Some(2));
+        assert_eq!(counters.single_value(&[!0; 1]), Some(2));
         counters.add(&[0b0100], 2);
-        assert_eq!(counters.single_value(), None);
+        assert_eq!(counters.single_value(&[!0; 1]), None);
         let mut counters = Counters::<1>::filled(0);
         counters.add(&[0b1], -3);
-        assert_eq!(counters.single_value(), Some(-3));
+        assert_eq!(counters.single_value(&[!0; 1]), Some(-3));
+        assert_eq!(counters.single_value(&[0b10]), None, "none of these is hidden");
     }
 }

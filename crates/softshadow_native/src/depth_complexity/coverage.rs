@@ -6,7 +6,7 @@
 //!
 //! Neighbouring edges read the same entry for the corner they share, so sectors tile the light without gaps whatever the resolution.
 
-use glam::Vec2;
+use glam::{DVec2, Vec2};
 
 use super::edge::ProjectedEdge;
 
@@ -26,16 +26,18 @@ pub enum Coverage<'a> {
 /// Samples with c→s across the edge, exactly: those whose direction changes sides between the two ends in the sense that c's side of
 /// the line demands, and that lie beyond the line.
 #[must_use]
-pub fn crossed_exactly<const W: usize>(edge: &ProjectedEdge, [from, to]: [Vec2; 2], samples: &[[f32; 2]]) -> Mask<W> {
+pub fn crossed_exactly<const W: usize>(edge: &ProjectedEdge, [from, to]: [DVec2; 2], samples: &[[f32; 2]]) -> Mask<W> {
     let line = edge.line;
-    let left = edge.has_reference_left();
+    let left = edge.has_reference_left;
+    let line_left = edge.line_has_reference_left([from, to]);
     let mut mask = [0; W];
     for (word, chunk) in mask.iter_mut().zip(samples.chunks(64)) {
         for (bit, [x, y]) in chunk.iter().enumerate() {
-            // The side of a direction does not know which edge asks.
-            let left_of_from = from.x * y - from.y * x >= 0.0;
-            let left_of_to = to.x * y - to.y * x >= 0.0;
-            let beyond = (line.x * x + line.y * y + line.z >= 0.0) != left;
+            // The side of a direction does not know which edge asks, and is exact: so is the side of c.
+            let s = DVec2::new(f64::from(*x), f64::from(*y));
+            let left_of_from = from.perp_dot(s) >= 0.0;
+            let left_of_to = to.perp_dot(s) >= 0.0;
+            let beyond = (line.x * x + line.y * y + line.z >= 0.0) != line_left;
             let crossed = (left_of_from != left_of_to) & (left_of_from == left) & beyond;
             *word |= u64::from(crossed) << bit;
         }
@@ -78,9 +80,10 @@ fn direction_of(angle: f32) -> Vec2 {
 }
 
 impl CoverageTables {
-    /// Tables of a resolution: `directions` entries for sectors, `angles × distances` for lines.
+    /// Tables of a resolution: `directions` entries for sectors, `angles × distances` for lines, each at least one.
     #[must_use]
     pub fn new(samples: &[[f32; 2]], directions: usize, angles: usize, distances: usize) -> Self {
+        let [directions, angles, distances] = [directions, angles, distances].map(|cells| cells.max(1));
         let words = samples.len().div_ceil(64);
         let points: Vec<Vec2> = samples.iter().map(|s| Vec2::from(*s)).collect();
         let mask = |holds: &dyn Fn(Vec2) -> bool| {
@@ -130,11 +133,12 @@ impl CoverageTables {
 
     /// Samples with c→s across the edge, by the tables.
     #[must_use]
-    pub fn crossed<const W: usize>(&self, edge: &ProjectedEdge, [from, to]: [Vec2; 2]) -> Mask<W> {
-        let left = edge.has_reference_left();
+    pub fn crossed<const W: usize>(&self, edge: &ProjectedEdge, [from, to]: [DVec2; 2]) -> Mask<W> {
+        let left = edge.has_reference_left;
         let line = edge.line;
         // Away from c, across the line.
-        let normal = if left { -line.truncate() } else { line.truncate() };
+        let away_from_left = edge.line_has_reference_left([from, to]);
+        let normal = if away_from_left { -line.truncate() } else { line.truncate() };
         let length = normal.x.abs() + normal.y.abs();
         let distance = line.z.abs() / length.max(f32::MIN_POSITIVE) * self.distances as f32 / self.farthest;
         if distance >= self.distances as f32 {
@@ -142,7 +146,7 @@ impl CoverageTables {
         }
         let angle = Self::cell(pseudo_angle(normal), self.angles);
         let beyond = &self.beyond[(angle * self.distances + distance as usize) * self.words..][..self.words];
-        let [first, last] = if left { [from, to] } else { [to, from] };
+        let [first, last] = (if left { [from, to] } else { [to, from] }).map(DVec2::as_vec2);
         let [first_before, last_before] = [first, last]
             .map(|d| &self.before[Self::cell(pseudo_angle(d), self.directions) * self.words..][..self.words]);
         // Whether the sector holds the direction from which the table counts is a matter of signs: comparing the angles could contradict

@@ -1,16 +1,17 @@
 //! Visibility of one receiver.
 
+use glam::{DVec2, Vec3};
 use softshadow_scene::LightFrame;
 use softshadow_scene::occluders::{Occluders, UNITS_PER_HALVING};
 
-use super::area::{AreaSum, area_beyond, area_of};
+use super::area::{AreaSum, area_beyond};
 use super::counters::Counters;
 use super::coverage::{Coverage, Mask, crossed_exactly};
 use super::depth_of_reference::depth_of_reference;
 use super::edge::ProjectedEdge;
 use super::face::{Layers, weight};
 use super::reach::edges_in_reach;
-use super::touching::add_touching;
+use super::touching::{add_touching, most_touching};
 use super::view::{LightView, Receiver, Sight};
 
 /// An area is not believed when it differs by more than this share of `samples^-3/4` from the share of the samples: stratified samples
@@ -33,23 +34,53 @@ pub struct DepthComplexity<'a> {
 }
 
 /// What a receiver sees.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Seen<const W: usize> {
     /// Samples that are hidden wholly.
     pub hidden: Mask<W>,
+    /// What passes semi-opaque faces to each sample; `None` where there are none, and samples are seen or hidden.
+    pub passes: Option<Vec<f32>>,
     /// Share of the samples that is visible, what passes semi-opaque faces included.
     pub sampled: f32,
     /// Share of the light's area that is visible; `None` where samples have to answer.
     pub by_area: Option<f32>,
     /// How many edges were silhouettes over the light.
     pub silhouettes: u32,
+    /// More semi-opaque layers than their counters hold: what passes is not to be trusted.
+    pub overflowed: bool,
 }
 
 impl<const W: usize> Seen<W> {
+    fn all_or_nothing(hidden: Mask<W>, visible: f32) -> Self {
+        Self { hidden, passes: None, sampled: visible, by_area: Some(visible), silhouettes: 0, overflowed: false }
+    }
+
     /// The best answer: by area where there is one, else by samples.
     #[must_use]
     pub fn visibility(&self) -> f32 {
         self.by_area.unwrap_or(self.sampled)
+    }
+
+    /// What passes to one sample: 0 hidden, 1 visible.
+    #[must_use]
+    pub fn passes(&self, sample: usize) -> f32 {
+        match self.hidden[sample / 64] >> (sample % 64) & 1 {
+            1 => 0.0,
+            _ => self.passes.as_ref().map_or(1.0, |passes| passes[sample]),
+        }
+    }
+
+    /// Visibility of a textured light: for each channel the light that passes over all light. Forest et al., equation 2, is that times the
+    /// mean radiance. A channel without light returns the share of the samples.
+    ///
+    /// `radiance` has one entry a sample, as [`softshadow_scene::LightSamples::radiance`].
+    #[must_use]
+    pub fn textured(&self, radiance: &[[f32; 3]]) -> [f32; 3] {
+        [0, 1, 2].map(|channel| {
+            let weighted = radiance.iter().enumerate().map(|(sample, l)| (f64::from(l[channel]), self.passes(sample)));
+            let (whole, seen) = weighted.fold((0.0, 0.0), |(whole, seen), (l, p)| (whole + l, seen + l * f64::from(p)));
+            if whole > 0.0 { (seen / whole) as f32 } else { self.sampled }
+        })
     }
 }
 
@@ -60,8 +91,8 @@ impl DepthComplexity<'_> {
         let samples = &self.samples[..self.samples.len().min(64 * W)];
         let all = first_bits::<W>(samples.len());
         let view = match LightView::towards(self.light, receiver.position) {
-            Sight::Behind => return Seen { hidden: all, sampled: 0.0, by_area: Some(0.0), silhouettes: 0 },
-            Sight::Inside => return Seen { hidden: [0; W], sampled: 1.0, by_area: Some(1.0), silhouettes: 0 },
+            Sight::Behind => return Seen::all_or_nothing(all, 0.0),
+            Sight::Inside => return Seen::all_or_nothing([0; W], 1.0),
             Sight::View(view) => view,
         };
         let placed;
@@ -73,7 +104,7 @@ impl DepthComplexity<'_> {
         };
         let mut hidden = below_horizon(&view, receiver, samples);
         if hidden == all {
-            return Seen { hidden, sampled: 0.0, by_area: None, silhouettes: 0 };
+            return Seen { by_area: None, ..Seen::all_or_nothing(hidden, 0.0) };
         }
         let depth = depth_of_reference(&view, self.occluders, receiver);
         let mut folded = Folded::new(depth, self.exact_area && is_above_horizon(&view, receiver, self.light));
@@ -93,14 +124,22 @@ impl DepthComplexity<'_> {
                 folded.add(self.light, &image, directions, weight, &mask);
             }
         });
-        let touching_before = hidden;
         let reference = self.light.reference;
+        folded.most_attenuation += most_touching(self.occluders);
         add_touching(&view, self.occluders, receiver, reference, samples, &mut hidden, &mut folded.attenuation);
-        let is_touched = hidden != touching_before;
         hidden.iter_mut().zip(folded.opaque.nonzero()).zip(all).for_each(|((h, d), a)| *h |= d & a);
-        let sampled = share(&hidden, &folded.attenuation, samples.len());
-        let by_area = if is_touched { None } else { folded.visible_area(self.light, &all, samples.len(), sampled) };
-        Seen { hidden, sampled, by_area, silhouettes: folded.silhouettes }
+        let mut seen = Seen {
+            hidden,
+            passes: folded.passes(samples.len()),
+            sampled: 0.0,
+            by_area: None,
+            silhouettes: folded.silhouettes,
+            overflowed: folded.most_attenuation > i64::from(i32::MAX),
+        };
+        seen.sampled =
+            (0..samples.len()).map(|sample| f64::from(seen.passes(sample))).sum::<f64>() as f32 / samples.len() as f32;
+        seen.by_area = folded.visible_area(self.light, &all, samples.len(), seen.sampled);
+        seen
     }
 }
 
@@ -113,6 +152,8 @@ struct Folded<const W: usize> {
     silhouettes: u32,
     smallest_weight: u32,
     is_opaque: bool,
+    /// No sample has more attenuation than that.
+    most_attenuation: i64,
 }
 
 impl<const W: usize> Folded<W> {
@@ -125,6 +166,7 @@ impl<const W: usize> Folded<W> {
             silhouettes: 0,
             smallest_weight: u32::MAX,
             is_opaque: depth.attenuation == 0,
+            most_attenuation: depth.attenuation.abs(),
         }
     }
 
@@ -133,38 +175,43 @@ impl<const W: usize> Folded<W> {
         &mut self,
         light: &LightFrame,
         image: &ProjectedEdge,
-        [from, to]: [glam::Vec2; 2],
+        [from, to]: [DVec2; 2],
         weight: Layers,
         mask: &Mask<W>,
     ) {
-        let left = image.has_reference_left();
+        let left = image.has_reference_left;
         let change = if left { weight.negated() } else { weight };
         self.silhouettes += 1;
         self.opaque.add(mask, change.opaque);
         self.attenuation.add(mask, change.attenuation as i32);
         self.is_opaque &= weight.attenuation == 0;
+        self.most_attenuation += weight.attenuation.abs();
         if weight.opaque != 0 {
             self.smallest_weight = self.smallest_weight.min(weight.opaque.unsigned_abs());
         }
         if let (Some(areas), Some(outline)) = (&mut self.areas, &light.outline) {
-            let beyond = if left {
-                area_beyond(outline, image.line, from, to)
-            } else {
-                area_beyond(outline, -image.line, to, from)
-            };
+            let line = if image.line_has_reference_left([from, to]) { image.line } else { -image.line };
+            let [first, last] = if left { [from, to] } else { [to, from] };
+            let beyond = area_beyond(outline, line, first.as_vec2(), last.as_vec2());
             areas.add(beyond, change.opaque);
         }
     }
 
+    /// What passes semi-opaque faces to each sample.
+    fn passes(&self, samples: usize) -> Option<Vec<f32>> {
+        let of = |sample| (-f64::from(self.attenuation.value(sample)) / UNITS_PER_HALVING).exp2() as f32;
+        (self.attenuation.nonzero() != [0; W]).then(|| (0..samples).map(of).collect())
+    }
+
     /// The visible share of the light's area, where all samples that are hidden lie under equally many layers.
     fn visible_area(&self, light: &LightFrame, all: &Mask<W>, samples: usize, sampled: f32) -> Option<f32> {
-        let whole = area_of(light.outline.as_ref()?);
+        let whole = light.outline.as_ref()?.area();
         let change = self.areas?.value();
         if !self.is_opaque {
             return None;
         }
         let nothing_hidden = self.opaque.nonzero().iter().zip(all).all(|(d, a)| d & a == 0);
-        let layers = match self.opaque.single_value() {
+        let layers = match self.opaque.single_value(all) {
             Some(value) if value > 0 => f64::from(value),
             // A sliver between the samples: a layer of the thinnest edge seen.
             _ if nothing_hidden && self.smallest_weight < u32::MAX => f64::from(self.smallest_weight),
@@ -193,7 +240,7 @@ fn first_bits<const W: usize>(count: usize) -> Mask<W> {
 /// Samples on or below the plane of the receiver's surface.
 fn below_horizon<const W: usize>(view: &LightView, receiver: &Receiver, samples: &[[f32; 2]]) -> Mask<W> {
     let mut mask = [0; W];
-    if let Some(normal) = receiver.normal.map(glam::Vec3::from) {
+    if let Some(normal) = receiver.normal.map(Vec3::from) {
         let [x, y, way] = view.ways.map(|w| normal.dot(w));
         for (word, chunk) in mask.iter_mut().zip(samples.chunks(64)) {
             for (bit, s) in chunk.iter().enumerate() {
@@ -209,19 +256,6 @@ fn is_above_horizon(view: &LightView, receiver: &Receiver, light: &LightFrame) -
     let [low, high] = light.bounds;
     receiver.normal.is_none_or(|normal| {
         let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
-        corners.iter().all(|c| glam::Vec3::from(normal).dot(view.way_to(*c)) > 0.0)
+        corners.iter().all(|c| Vec3::from(normal).dot(view.way_to(*c)) > 0.0)
     })
-}
-
-/// The mean over the samples of what passes.
-fn share<const W: usize>(hidden: &Mask<W>, attenuation: &Counters<W>, samples: usize) -> f32 {
-    if attenuation.nonzero() == [0; W] {
-        let count: u32 = hidden.iter().map(|w| w.count_ones()).sum();
-        return 1.0 - count as f32 / samples as f32;
-    }
-    let passes = |s: usize| match hidden[s / 64] >> (s % 64) & 1 {
-        1 => 0.0,
-        _ => (-f64::from(attenuation.value(s) as u32) / UNITS_PER_HALVING).exp2(),
-    };
-    ((0..samples).map(passes).sum::<f64>() / samples as f64) as f32
 }

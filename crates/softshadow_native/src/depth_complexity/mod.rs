@@ -14,16 +14,16 @@
 //!
 //! `w` is 0 where two faces continue each other, so only silhouettes count; nothing is asked of the mesh.
 //!
-//! **Why it gives the answer of rays.** Every sign is taken once and shared, so that rounding moves an edge but never tears the
-//! image: a corner's direction from c ([`edge`]) decides for all edges that meet there between which two a sample lies; c's side of
-//! an edge decides both whether a crossing lies towards the sample and whether c is covered ([`depth_of_reference`]); a face's side
-//! decides for all its edges and for its own cover ([`face`]). What is left to rounding is the one comparison of a sample with a
-//! line, and only samples within a few roundings of an edge can fall to its other side.
+//! **Why it gives the answer of rays.** Every sign is taken once and shared, so that rounding moves an edge but does not tear the image.
+//! The images of corners are rounded once; what follows from them, in which order directions stand and on which side of an edge c lies, is
+//! decided exactly ([`edge`]). It decides both whether a crossing lies towards the sample and whether c is covered
+//! ([`depth_of_reference`]). A face's side decides for all its edges and for its own cover ([`face`]). What is left to rounding is the one
+//! comparison of a sample with a line, and only samples within a few roundings of it can fall to the other side.
 //!
 //! **Parameters.** [`Coverage`]: exact, or the paper's tables; whether areas are wanted ([`area`]).
 //!
 //! **When it is wrong.** Tables move samples by up to a table cell. Areas are wrong where layers overlap between all samples.
-//! A receiver whose ways to c and to a sample both pass within rounding of one corner may lose that sample.
+//! A receiver exactly on an edge of a face, told neither normal nor triangle, may take that face for either side of it.
 //!
 //! | file | holds |
 //! |---|---|

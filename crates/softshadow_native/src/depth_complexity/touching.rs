@@ -45,6 +45,13 @@ fn to_surface(cap: Cap, reference: [f32; 2], [x, y]: [f32; 2]) -> f32 {
     cap.distance * (1.0 - cap.sine_squared) / (1.0 + depth_squared.sqrt())
 }
 
+/// No sample gets more attenuation than that from them.
+#[must_use]
+pub fn most_touching(occluders: &Occluders) -> i64 {
+    let units = occluders.touching.iter().map(|t| t.attenuation).filter(|units| *units != OPAQUE);
+    units.map(i64::from).sum()
+}
+
 /// What lies behind a triangle as seen from a receiver. Every determinant has an edge of the triangle for a factor, so that rounding is
 /// in proportion to the triangle.
 struct Shadow {

@@ -3,7 +3,7 @@
 use softshadow_native::depth_complexity::Receiver;
 use softshadow_scene::{LocalScene, Material, Mesh, Scene};
 
-use crate::scene::{Random, Setup, Soup, opaque};
+use crate::scene::{Random, Setup, Soup, on_triangle, opaque};
 use crate::shapes::{above, aimed, ball, cuboid, leaves, plate, shapes, soup, square, torus};
 
 /// Receivers for at least 10^6 samples.
@@ -236,6 +236,117 @@ fn inside_a_closed_occluder_nothing_is_seen() {
         let position = random.point([-0.5; 3], [0.5; 3]);
         assert_eq!(setup.see(&Receiver { position, ..Receiver::default() }).hidden[0], !0);
     }
+}
+
+#[test]
+fn faces_in_one_plane_with_the_reference_point_tear_nothing() {
+    // A triangle whose plane holds c, and receivers in that plane and around it: c lies within rounding of all its edges' images.
+    let light = above(square(1.0), [0.1, 0.2, 3.0]);
+    let bare = Setup::new(Soup::new(), light.clone(), 64);
+    let c = bare.frame.reference.map(f64::from);
+    // The light's frame has y turned.
+    let c = glam::DVec3::new(0.1 + c[0] * 0.5, 0.2 - c[1] * 0.5, 3.0);
+    let (across, down) = (glam::DVec3::new(0.6, 0.8, 0.0), glam::DVec3::NEG_Z);
+    let normal = across.cross(down);
+    let corner = |s: f64, t: f64| (c + across * s + down * t).as_vec3().to_array();
+    for (name, mesh) in [
+        ("ahead", vec![[corner(-0.8, 0.5), corner(0.9, 0.7), corner(0.1, 2.0)]]),
+        // Beside the receivers: inside a face visibility jumps.
+        ("partly behind", vec![[corner(1.2, 0.5), corner(1.9, 0.7), corner(1.3, 6.0)]]),
+    ] {
+        let setup = Setup::new(mesh, light.clone(), 64);
+        let mut random = Random(26);
+        for off in [0.0, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4] {
+            let (mut torn, mut most) = (0, 0);
+            for _ in 0..4000 {
+                let (s, t) = (random.within(-1.0, 1.0), random.within(2.1, 4.0));
+                let p = (c + across * s + down * t + normal * random.within(-off, off)).as_vec3();
+                let receiver = Receiver { position: p.to_array(), ..Receiver::default() };
+                let differ = (setup.see(&receiver).hidden[0] ^ setup.hidden_by_rays(&receiver)).count_ones();
+                torn += usize::from(differ > 8);
+                most = most.max(differ);
+            }
+            assert_eq!(torn, 0, "{name}, {off} off the plane: {torn} receivers, up to {most} samples");
+        }
+    }
+}
+
+#[test]
+fn lifted_receivers_on_edges_and_corners_of_bodies() {
+    // With normal and triangle, as the receiver stage makes them: on an edge that two coplanar triangles share, an edge of the next
+    // triangle passes 8e-7 below.
+    let mut random = Random(27);
+    let boxes = [
+        soup(&cuboid([-0.5, -0.5, 0.0], [0.5, 0.5, 0.5])),
+        [soup(&cuboid([-0.5; 3], [0.5, 0.5, 0.0])), soup(&cuboid([-0.2, -0.3, 0.0], [0.3, 0.2, 0.4]))].concat(),
+        soup(&ball([0.0; 3], 0.5, 2)),
+    ];
+    for mesh in boxes {
+        for (name, shape) in shapes(1.0, 3.0) {
+            let setup = Setup::new(mesh.clone(), aimed(shape, [0.3, 0.4, 3.0], [0.0; 3]), 64);
+            let (mut differing, mut most, mut visible) = (0, 0, 0);
+            for i in 0..12_000 {
+                let index = random.below(mesh.len());
+                let mut flat = mesh[index];
+                // All weight on two corners, or on one.
+                flat[2] = flat[i % 2];
+                let u = random.within(0.0, 1.0) as f32;
+                let place: [f32; 3] = std::array::from_fn(|k| flat[0][k] + (flat[1 + i % 2][k] - flat[0][k]) * u);
+                let near = [mesh[index][0], mesh[index][1], place];
+                let Some(mut receiver) = on_triangle(&mut random, &mesh[index], index, glam::DVec3::Z * 9.0, 1.0)
+                else {
+                    continue;
+                };
+                let at = glam::Vec3::from(if i % 3 == 0 { near[i % 2] } else { near[2] });
+                let lift = 14.0 * 5.960_464_5e-8 * (at.abs().max_element() + 1.0);
+                receiver.position = (at + glam::Vec3::from(receiver.normal.unwrap()) * lift).to_array();
+                let rays = setup.hidden_by_rays(&receiver);
+                let differ = (setup.see(&receiver).hidden[0] ^ rays).count_ones();
+                differing += differ;
+                most = most.max(differ);
+                visible += (!rays).count_ones();
+            }
+            assert!(visible > 100_000, "{name}");
+            assert!(differing <= 7 && most <= 2, "{name}: {differing} samples differ, up to {most} at one receiver");
+        }
+    }
+}
+
+#[test]
+fn just_in_front_of_the_light() {
+    let mut random = Random(28);
+    let mesh = [leaves(&mut random, 200, 0.5, [-0.6, -0.6, 0.2], [0.6, 0.6, 0.99])].concat();
+    let setup = Setup::new(mesh, above(square(1.0), [0.1, 0.2, 1.0]), 64);
+    for exponent in 1..=6 {
+        let height = 10f64.powi(-exponent);
+        let receivers: Vec<[f32; 3]> =
+            (0..4000).map(|_| random.point([-0.5, -0.5, 1.0 - height], [0.7, 0.7, 1.0 - height])).collect();
+        let (differing, _) = compare(&setup, receivers);
+        assert_eq!(differing, 0, "{height} in front");
+    }
+}
+
+#[test]
+fn the_own_triangle_hides_nothing() {
+    // Receivers a little inside a body, each told the triangle above it: light comes through that one and no other.
+    let mut random = Random(25);
+    let mesh = soup(&ball([0.0; 3], 0.6, 2));
+    let setup = Setup::new(mesh.clone(), lamp(), 64);
+    let (mut differing, mut passing) = (0, 0);
+    for index in (0..mesh.len()).filter(|i| mesh[*i].iter().all(|v| v[2] > 0.2)) {
+        for _ in 0..80 {
+            let towards = glam::DVec3::new(0.3, 0.4, 3.0);
+            let above = on_triangle(&mut random, &mesh[index], index, towards, 1.0).unwrap();
+            let position = above.position.map(|x| x * 0.97);
+            let own = Receiver { position, normal: None, triangle: Some(index as u32) };
+            let rays = setup.hidden_by_rays(&own);
+            differing += (setup.see(&own).hidden[0] ^ rays).count_ones();
+            passing += (!rays).count_ones();
+            assert_eq!(setup.see(&Receiver { triangle: None, ..own }).hidden[0], !0, "inside a closed body");
+        }
+    }
+    assert!(passing > 50_000, "{passing} samples are seen through the own triangle");
+    assert_eq!(differing, 0);
 }
 
 #[test]

@@ -19,8 +19,10 @@ use crate::scene::{Random, Setup, Soup, on_triangle, opaque};
 use crate::shapes::{aimed, shapes, square};
 
 const MESHES: [&str; 6] = ["stanford-bunny", "teapot", "cow", "spot", "beetle", "fandisk"];
-/// On the casters, on the ground, near the casters (10^-6 to 10^-1 away), all around.
-const KINDS: usize = 4;
+/// On the casters, on the ground, near the casters (10^-6 to 10^-1 away), on edges and corners of the casters, all around.
+const KINDS: usize = 5;
+/// A receiver with more differing samples is off as a whole.
+const GROSS: u32 = 8;
 
 /// Roundings of an edge's determinant: a way, the rows (a position in the frame, two products, their difference), a product and two sums
 /// for each image; a product and a difference for the line; a sample, a product and two sums for its side.
@@ -39,6 +41,8 @@ struct Tally {
     roundings: f64,
     /// Exact coverage against rays, unexplained.
     faults: usize,
+    /// Receivers with more than [`GROSS`] grazing samples: within rounding of the plane of a face that hides them.
+    gross: usize,
     /// Table coverage against exact coverage: samples compared, within a cell of an edge, and unexplained.
     table_samples: usize,
     table_cells: usize,
@@ -59,6 +63,7 @@ impl Tally {
             grazing: self.grazing + other.grazing,
             roundings: self.roundings.max(other.roundings),
             faults: self.faults + other.faults,
+            gross: self.gross + other.gross,
             table_samples: self.table_samples + other.table_samples,
             table_cells: self.table_cells + other.table_cells,
             table_faults: self.table_faults + other.table_faults,
@@ -68,12 +73,13 @@ impl Tally {
 
     fn row(&self, name: &str) -> String {
         format!(
-            "| {name} | {} | {} | {} | {} | {} | {} | {:.1e} | {} | {} |\n",
+            "| {name} | {} | {} | {} | {} | {} | {} | {} | {:.1e} | {} | {} |\n",
             thousands(self.receivers),
             thousands(self.penumbra),
             thousands(self.samples),
             self.faults,
             self.grazing,
+            self.gross,
             if self.grazing == 0 { "–".to_owned() } else { format!("{}", self.roundings) },
             self.table_cells as f64 / self.table_samples.max(1) as f64,
             self.table_faults,
@@ -178,6 +184,16 @@ impl Place {
                 let p = DVec3::from(surface.position.map(f64::from)) + random.direction() * distance;
                 Some(Receiver { position: p.as_vec3().to_array(), normal: None, triangle: None })
             }
+            3 => {
+                let index = self.casters[random.below(self.casters.len())];
+                let mut receiver = on_triangle(random, &setup.triangles[index], index, light, extent)?;
+                let [a, b] = [0, 1].map(|k| glam::Vec3::from(setup.triangles[index][(k + index) % 3]));
+                let along = if random.below(2) == 0 { 0.0 } else { random.within(0.0, 1.0) as f32 };
+                let place = a + (b - a) * along;
+                let lift = 14.0 * 5.960_464_5e-8 * (place.abs().max_element() + extent);
+                receiver.position = (place + glam::Vec3::from(receiver.normal?) * lift).to_array();
+                Some(receiver)
+            }
             _ => {
                 let world = [random.within(-1.0, 1.0), random.within(0.0, self.top), random.within(-1.0, 1.0)];
                 Some(Receiver { position: self.local(world).as_vec3().to_array(), normal: None, triangle: None })
@@ -205,6 +221,7 @@ impl Place {
                     ..Tally::default()
                 };
                 self.explain(&receiver, edges ^ rays, &mut tally);
+                tally.gross = usize::from((edges ^ rays).count_ones() > GROSS);
                 if i % 8 == 0 {
                     let quick: Seen<1> = self.setup.technique(Coverage::Tables(tables), false).see(&receiver);
                     tally.table_samples += 64;
@@ -267,7 +284,7 @@ impl Place {
                 let Some(directions) = image.directions() else { return false };
                 let line = image.line.as_dvec3();
                 let away = (line.x * x + line.y * y + line.z).abs() / line.truncate().length();
-                let [from, to] = directions.map(|d| d.as_dvec2().normalize());
+                let [from, to] = directions.map(DVec2::normalize);
                 let way = DVec2::new(x, y).normalize();
                 let near = |d: DVec2| d.angle_to(way).abs() <= turn;
                 let between = from.perp_dot(way) * way.perp_dot(to) >= 0.0 && (from + to).dot(way) >= 0.0;
@@ -299,8 +316,8 @@ fn inside(triangle: &[[f64; 3]; 3], p: DVec3) -> bool {
 fn run(receivers: usize) -> (String, Tally) {
     let names: Vec<&str> = MESHES.iter().copied().filter(|_| mesh_folder().is_some()).chain(["canopy"]).collect();
     let mut table = String::from(
-        "| casters and ground, light | receivers | in penumbra | samples | faults | grazing | roundings needed | by tables | table faults | hidden |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n",
+        "| casters and ground, light | receivers | in penumbra | samples | faults | grazing | gross | roundings needed | by tables | table faults | hidden |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     let mut total = Tally::default();
     for name in &names {
@@ -328,6 +345,7 @@ fn expect_no_faults(table: &str, total: &Tally) {
     assert!(total.penumbra * 50 > total.receivers, "the receivers are hard enough:\n{table}");
     assert_eq!((total.faults, total.table_faults), (0, 0), "{:#?}\n{table}", total.stories);
     assert!((total.grazing as f64) <= 1e-5 * total.samples as f64, "\n{table}");
+    assert!((total.gross as f64) <= 1e-6 * total.receivers as f64 + 1.0, "\n{table}");
 }
 
 #[test]
@@ -382,7 +400,8 @@ fn areas_on_real_meshes() {
             rms(answers.squared_sampled),
             answers.worst,
         );
-        assert!(answers.penumbra > 500 && answers.gain() < 0.35, "{table}{answers:?}");
+        assert!(answers.penumbra > 500, "{table}{answers:?}");
+        assert!(answers.share_fooled() < 0.25 && answers.gain() < 0.35, "{table}{answers:?}");
     }
     if let Some(path) = std::env::var_os("SOFTSHADOW_AREA_TABLE") {
         std::fs::write(path, &table).unwrap();

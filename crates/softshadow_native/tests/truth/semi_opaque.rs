@@ -1,9 +1,9 @@
 //! Two counters: opaque layers, and the attenuation of semi-opaque ones.
 
 use softshadow_native::depth_complexity::{Coverage, Receiver};
-use softshadow_scene::LocalFrame;
+use softshadow_scene::{LightTexture, LocalFrame};
 
-use crate::scene::{Random, Setup, Soup};
+use crate::scene::{Random, Setup, Soup, opaque};
 use crate::shapes::{above, aimed, ball, leaves, plate, shapes, soup, square, torus};
 
 /// Opacities by the triangle's index, opaque ones among them.
@@ -80,4 +80,49 @@ fn semi_opaque_geometry_in_a_ball_of_light() {
     }
     // One of the 128,000 samples lies 2e-7 from an edge.
     assert!(differing <= 1, "{differing} receivers differ");
+}
+
+#[test]
+fn textured_lights_weigh_what_passes() {
+    let mut random = Random(43);
+    let mesh = [leaves(&mut random, 60, 0.4, [-0.5; 3], [0.5; 3]), soup(&ball([0.0; 3], 0.2, 2))].concat();
+    let texture = LightTexture::new(2, 2, vec![[1.0, 0.0, 0.3], [0.0, 2.0, 0.3], [0.5, 0.1, 0.3], [0.0, 0.0, 0.3]]);
+    let light = aimed(square(1.0), [0.3, 0.4, 3.0], [0.0; 3]).with_texture(texture.unwrap()).unwrap();
+    for opacity in [opaque, mixed] {
+        let setup = Setup::in_frame(mesh.clone(), LocalFrame::around(None), light.clone(), 64, opacity);
+        let radiance = &setup.parameters.radiance;
+        let mut coloured = 0;
+        for _ in 0..1000 {
+            let position = random.point([-1.0, -1.0, -0.9], [1.0, 1.0, -0.6]);
+            let receiver = Receiver { position, ..Receiver::default() };
+            let (seen, truth) = (setup.see(&receiver).textured(radiance), passed(&setup, &receiver));
+            for channel in 0..3 {
+                let of = |s: usize| f64::from(radiance[s][channel]);
+                let (all, through) = (0..64).fold((0.0, 0.0), |(a, t), s| (a + of(s), t + of(s) * truth[s]));
+                assert!((f64::from(seen[channel]) - through / all).abs() < 3e-4, "{position:?}: {seen:?}");
+            }
+            coloured += usize::from((seen[0] - seen[1]).abs() > 0.05);
+        }
+        assert!(coloured > 30, "{coloured} receivers see coloured light");
+    }
+    // A channel without light returns the share of the samples.
+    let setup = Setup::in_frame(mesh, LocalFrame::around(None), light, 64, mixed);
+    let seen = setup.see(&Receiver { position: [0.1, 0.0, -0.8], ..Receiver::default() });
+    assert_eq!(seen.textured(&[[0.0; 3]; 64]), [seen.sampled; 3]);
+}
+
+#[test]
+fn more_layers_than_counters_hold_are_told() {
+    let almost = |_: usize| 0.999_999_94;
+    let stack =
+        |layers: usize| -> Soup { (0..layers).flat_map(|i| plate([0.0, 0.0, -0.5 + i as f64 * 1e-5], 0.2)).collect() };
+    let light = above(square(1.0), [0.1, 0.05, 3.0]);
+    for (layers, overflows) in [(200, false), (24_000, true)] {
+        let setup = Setup::in_frame(stack(layers), LocalFrame::around(None), light.clone(), 64, almost);
+        let seen = setup.see(&Receiver { position: [0.19, 0.0, -0.6], ..Receiver::default() });
+        assert_eq!(seen.overflowed, overflows, "{layers} layers");
+        if !overflows {
+            assert!(seen.sampled > 0.0 && seen.sampled < 1.0);
+        }
+    }
 }

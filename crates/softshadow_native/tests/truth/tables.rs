@@ -104,7 +104,7 @@ fn edges_seen_end_on_wrap_by_signs() {
         let end =
             |angle: f64, length: f64| Vec3::new((angle.cos() * length) as f32, (angle.sin() * length) as f32, 1.0);
         let ends = [end(angle, random.within(0.01, 0.3)), end(angle + turn, random.within(0.3, 2.0))];
-        let image = ProjectedEdge { ends, line: ends[0].cross(ends[1] - ends[0]) };
+        let image = ProjectedEdge::from_images(ends, ends[1] - ends[0]);
         let mask: [u64; 1] = fine.crossed(&image, image.directions().unwrap());
         worst = worst.max(mask[0].count_ones());
     }
