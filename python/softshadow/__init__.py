@@ -34,12 +34,13 @@ from .light_samples import LightPoints, light_points
 from .lights import DiscLight, Light, PolygonLight, RectLight, SphereLight, SunLight
 from .picture import Picture, render
 from .scene import Mesh, Scene
-from .techniques import HardShadowMap, RayTraced, Technique
+from .techniques import DepthComplexity, HardShadowMap, RayTraced, Technique
 from .visibility import Visibility, visibility
 
 __all__ = [
     "Camera",
     "Comparison",
+    "DepthComplexity",
     "Diagnosis",
     "DiscLight",
     "GpuError",

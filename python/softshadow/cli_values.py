@@ -24,6 +24,13 @@ def parse_size(text: str) -> tuple[int, int]:
     return width, height
 
 
+def _truth(text: str) -> bool:
+    words = {"true": True, "false": False}
+    if text not in words:
+        raise ValueError(f"true or false expected, got '{text}'")
+    return words[text]
+
+
 def parse_technique(text: str) -> Technique:
     """``ray-traced:samples=64,seed=1``."""
     name, _, rest = text.partition(":")
@@ -31,7 +38,8 @@ def parse_technique(text: str) -> Technique:
     if kind is None:
         known = ", ".join(known.replace("_", "-") for known in TECHNIQUES)
         raise argparse.ArgumentTypeError(f"unknown technique '{name}'; there are {known}")
-    readers: Readers = {field.name: _whole if field.type == "int" else str for field in fields(kind)}
+    by_type = {"int": _whole, "bool": _truth}
+    readers: Readers = {field.name: by_type.get(str(field.type), str) for field in fields(kind)}
     technique: Technique = _made(kind, **_settings(rest, readers))
     return technique
 

@@ -19,7 +19,7 @@ from .errors import SceneError, SettingsError
 from .files import png_or_npy, write
 from .lights import Light, built_lights
 from .scene import Scene
-from .techniques import RayTraced, Technique, technique_json
+from .techniques import DepthComplexity, RayTraced, Technique, technique_json
 
 Progress = Callable[[int, int], object]
 """Called with ``(done, total)`` between blocks; returning ``False`` stops the work with ``Interrupted``."""
@@ -117,7 +117,7 @@ def visibility(
     normals : (n, 3) float, optional
         For each point, of any length but zero: light from below the horizon is then not visible. A flat light
         is never visible from behind.
-    technique : RayTraced or HardShadowMap
+    technique : RayTraced, DepthComplexity or HardShadowMap
         How it is computed.
     device : {"auto", "gpu", "software"} or int
         ``"auto"`` takes a graphics card, else a software adapter; a number is an index in :func:`doctor`.
@@ -130,7 +130,8 @@ def visibility(
     receivers : bool
         Whether to return positions, normals and triangle ids.
     sample_masks : bool
-        Whether to return which samples are visible. Only `RayTraced` without probes decides all of them.
+        Whether to return which samples are visible. Only `RayTraced` without probes and `DepthComplexity`
+        decide all of them.
 
     Returns
     -------
@@ -149,8 +150,9 @@ def visibility(
     """
     built, several = built_lights(lights)
     where = receivers_of(camera, points, normals)
-    if sample_masks and not (isinstance(technique, RayTraced) and technique.probes == 0):
-        raise SettingsError("sample_masks: only RayTraced without probes decides every sample")
+    decides_all = isinstance(technique, DepthComplexity) or (isinstance(technique, RayTraced) and technique.probes == 0)
+    if sample_masks and not decides_all:
+        raise SettingsError("sample_masks: only RayTraced without probes and DepthComplexity decide every sample")
     arrays = _core.visibility(
         context(device),
         scene_of(scene),

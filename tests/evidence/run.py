@@ -13,6 +13,7 @@ import argparse
 import statistics
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -167,9 +168,9 @@ def against_time(model: Measured, rounds: int) -> list[str]:
         f"**{model.name}**, 512 × 512, {int(seen.sum()):,} receivers, {int(penumbra.sum()):,} of them in the "
         f"penumbra; the reference has 4,096 samples and a standard error of {spread:.4f}.",
         "",
-        "| samples | ours ms | RMSE | with 16 probes ms | RMSE | Open3D ms | RMSE | Mitsuba kernel ms | RMSE | "
-        "ours : Open3D | ours : Mitsuba | probes : Open3D | probes : Mitsuba |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|---|",
+        "| samples | rays ms | RMSE | with 16 probes ms | RMSE | edges ms | RMSE | Open3D ms | RMSE | "
+        "Mitsuba kernel ms | RMSE | rays : Open3D | rays : Mitsuba | edges : Open3D | edges : Mitsuba | edges : rays |",
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
 
     def rmse(values: np.ndarray) -> float:
@@ -182,12 +183,12 @@ def against_time(model: Measured, rounds: int) -> list[str]:
             part = slice(start, start + 20000)
             facing[part] = np.einsum("rc,rsc->rs", normals[part], targets[None] - origins[part, None]) > 0
 
-        def ours(probes: int = 0, samples: int = samples) -> tuple[np.ndarray, float]:
+        def ours(technique: ss.Technique) -> tuple[np.ndarray, float]:
             result = ss.visibility(
                 model.scene,
                 model.light,
                 **points,
-                technique=ss.RayTraced(samples=samples, probes=probes),
+                technique=technique,
                 standard_error=False,
                 device="software",
             )
@@ -204,9 +205,11 @@ def against_time(model: Measured, rounds: int) -> list[str]:
         def mitsuba_kernel(targets: np.ndarray = targets) -> tuple[np.ndarray, float]:
             return mitsuba.visibility(origins, normals, targets)
 
-        runs = {"ours": ours, "open3d": open3d, "mitsuba": mitsuba_kernel}
+        techniques = {"rays": ss.RayTraced(samples=samples), "edges": ss.DepthComplexity(samples=samples)}
         if samples > 16:
-            runs["probes"] = lambda ours=ours: ours(16)
+            techniques["probes"] = ss.RayTraced(samples=samples, probes=16)
+        runs = {name: partial(ours, technique) for name, technique in techniques.items()}
+        runs |= {"open3d": open3d, "mitsuba": mitsuba_kernel}
         times: dict[str, list[float]] = {name: [] for name in runs}
         errors: dict[str, float] = {}
         for turn in range(rounds + 1):
@@ -224,9 +227,9 @@ def against_time(model: Measured, rounds: int) -> list[str]:
             return f"{median[a] / median[b]:.2f}" if a in median else "–"
 
         lines.append(
-            f"| {samples} | {cell('ours')} | {cell('probes')} | {cell('open3d')} | {cell('mitsuba')} | "
-            f"{ratio('ours', 'open3d')} | {ratio('ours', 'mitsuba')} | "
-            f"{ratio('probes', 'open3d')} | {ratio('probes', 'mitsuba')} |"
+            f"| {samples} | {cell('rays')} | {cell('probes')} | {cell('edges')} | {cell('open3d')} | "
+            f"{cell('mitsuba')} | {ratio('rays', 'open3d')} | {ratio('rays', 'mitsuba')} | "
+            f"{ratio('edges', 'open3d')} | {ratio('edges', 'mitsuba')} | {ratio('edges', 'rays')} |"
         )
     return [*lines, ""]
 
@@ -243,6 +246,9 @@ def shipped_table(rounds: int) -> list[str]:
         ss.RayTraced(samples=64),
         ss.RayTraced(samples=64, probes=16),
         ss.RayTraced(samples=256),
+        ss.DepthComplexity(samples=16),
+        ss.DepthComplexity(samples=64),
+        ss.DepthComplexity(samples=256),
     ]
     for name in ("hall", "fork", "toruses"):
         shipped = ss.scenes.load(name)
@@ -258,10 +264,10 @@ def shipped_table(rounds: int) -> list[str]:
         for row in table.rows:
             settings = row["technique"]
             words = settings["name"]
-            if words == "ray_traced":
-                words += f", {settings['samples']} samples" + (
-                    f", {settings['probes']} probes" if settings["probes"] else ""
-                )
+            if "samples" in settings:
+                words += f", {settings['samples']} samples"
+            if settings.get("probes"):
+                words += f", {settings['probes']} probes"
             penumbra = row["penumbra"]
             lines.append(
                 f"| {name} | {words} | {row['median_ms']:.0f} | {penumbra['rmse']:.4f} | {penumbra['p99']:.3f} | "

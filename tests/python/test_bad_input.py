@@ -132,6 +132,9 @@ NONSENSE = [
     (lambda: ss.RayTraced(passes=0), ss.SettingsError, "passes"),
     (lambda: ss.RayTraced(samples=4, probes=4), ss.SettingsError, "probes"),
     (lambda: ss.RayTraced(seed=2**32), ss.SettingsError, "seed"),
+    (lambda: ss.DepthComplexity(samples=257), ss.SettingsError, "256"),
+    (lambda: ss.DepthComplexity(passes=0), ss.SettingsError, "passes"),
+    (lambda: ss.DepthComplexity(exact_area=1), ss.SettingsError, "exact_area.*True or False"),
     (lambda: ss.HardShadowMap(resolution=0), ss.SettingsError, "resolution"),
     (lambda: ss.HardShadowMap(resolution=2**31), ss.SettingsError, "resolution"),
     # calls

@@ -161,6 +161,26 @@ def test_visible_samples_are_those_of_light_points(scene):
             visibility(scene, light, camera=camera, technique=other, sample_masks=True)
 
 
+def test_silhouette_edges_see_the_samples_that_rays_see(scene):
+    light, camera = light_above(), camera_above((32, 24))
+    both = [
+        visibility(scene, light, camera=camera, technique=technique, sample_masks=True)
+        for technique in (ss.RayTraced(samples=64), ss.DepthComplexity(samples=64, exact_area=False))
+    ]
+    rays, edges = (result.visible_samples for result in both)
+    assert edges.shape == (24, 32, 64)
+    np.testing.assert_array_equal(rays, edges)
+    assert (~edges).sum() > 100
+    assert edges.sum() > 100
+    np.testing.assert_array_equal(both[0].values, both[1].values)
+    assert both[1].info["silhouette_edges"] > 0
+    assert both[1].info["area_receivers"] == 0
+    by_area = visibility(scene, light, camera=camera, technique=ss.DepthComplexity())
+    assert by_area.info["area_receivers"] > 0
+    difference = np.abs(by_area.values - both[1].values)[by_area.valid]
+    assert 0 < difference.max() < 0.1, "areas differ from samples by no more than samples from the truth"
+
+
 def test_light_points_of_a_sphere_fill_its_disc_as_each_receiver_sees_it(scene, floor_points):
     light = ss.SphereLight(radius=0.5, world_from_light=POSE)
     points = ss.light_points(light, 32, floor_points, scene=scene)
@@ -263,7 +283,7 @@ def test_defaults_are_those_of_the_library(scene, floor_points):
     from softshadow import _core  # noqa: TID251 - what the defaults are compared with
 
     for row in json.loads(_core.technique_defaults()):
-        kind = {"ray_traced": ss.RayTraced, "hard_shadow_map": ss.HardShadowMap}[row["name"]]
+        kind = {kind.name: kind for kind in (ss.RayTraced, ss.HardShadowMap, ss.DepthComplexity)}[row["name"]]
         assert json.loads(kind().to_json()) == row
     info = visibility(scene, light_above(), points=floor_points).info
     assert info["technique"] == json.loads(ss.RayTraced().to_json())

@@ -5,8 +5,9 @@ use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use softshadow_engine::{AdapterChoice, AdapterInfo, DeviceKind, Engine};
-use softshadow_scene::{LocalScene, Receivers, Scene};
-use softshadow_techniques::SceneContents;
+use softshadow_scene::{Light, LocalScene, Receivers, Scene};
+use softshadow_techniques::parts::occluder_buffers::boundary_of;
+use softshadow_techniques::{OccluderContents, SceneContents};
 
 use crate::error::Error;
 
@@ -54,6 +55,7 @@ pub struct Context {
     adapter: AdapterInfo,
     engine: Mutex<Arc<Engine>>,
     scenes: Mutex<VecDeque<(u64, Arc<SceneContents>)>>,
+    occluders: Mutex<VecDeque<(u64, Arc<OccluderContents>)>>,
 }
 
 impl Context {
@@ -73,7 +75,13 @@ impl Context {
         if adapter.device_type == DeviceKind::Software {
             log::warn!("'{}' is a software adapter: everything runs on the CPU", adapter.name);
         }
-        Ok(Self { choice, adapter, engine: Mutex::new(Arc::new(engine)), scenes: Mutex::default() })
+        Ok(Self {
+            choice,
+            adapter,
+            engine: Mutex::new(Arc::new(engine)),
+            scenes: Mutex::default(),
+            occluders: Mutex::default(),
+        })
     }
 
     /// What the device is.
@@ -118,6 +126,31 @@ impl Context {
             }
         }
         Ok(contents)
+    }
+
+    /// What hides each light, from the cache where it was used lately.
+    pub(crate) fn occluders(
+        &self,
+        scene: &Scene,
+        contents: &SceneContents,
+        lights: &[Light],
+    ) -> Result<Vec<Arc<OccluderContents>>, Error> {
+        let of = |light: &Light| {
+            let boundary = boundary_of(&contents.local, light);
+            let mut kept = lock(&self.occluders);
+            let is_it =
+                |(id, known): &&(u64, Arc<OccluderContents>)| *id == scene.identity() && known.boundary == boundary;
+            if let Some((_, known)) = kept.iter().find(is_it) {
+                return Ok(Arc::clone(known));
+            }
+            let made = Arc::new(OccluderContents::new(&contents.local, boundary)?);
+            kept.push_back((scene.identity(), Arc::clone(&made)));
+            if kept.len() > KEPT_SCENES {
+                kept.pop_front();
+            }
+            Ok(made)
+        };
+        lights.iter().map(of).collect()
     }
 }
 

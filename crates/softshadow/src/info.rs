@@ -20,6 +20,12 @@ pub struct Info {
     /// Receivers for which rays were traced, added up over lights, passes and sub-scenes; the others have nothing between them
     /// and the light.
     pub traced_receivers: u64,
+    /// Receivers that the visible area of a light answered, added up over lights and passes; samples answered the others.
+    pub area_receivers: u64,
+    /// Silhouette edges in the lists of all tiles, added up over lights and passes.
+    pub silhouette_edges: u64,
+    /// Triangles that the planes of lights cut.
+    pub cut_triangles: usize,
     /// Wall time from plan to values in milliseconds.
     pub wall_ms: f64,
     /// Time by pass, where the device has a clock.

@@ -5,10 +5,12 @@ use std::collections::BTreeMap;
 use softshadow_engine::{RunReport, StageReport, Timing};
 use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
+use softshadow_techniques::depth_complexity::LIST_COUNTS;
 use softshadow_techniques::parts::VISIBILITY;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
+use softshadow_techniques::parts::resolve::{BLOCKED, STANDARD_ERROR};
 use softshadow_techniques::parts::shading::COLOR;
-use softshadow_techniques::ray_traced::{BLOCKED, STANDARD_ERROR, TRACE_COUNTS};
+use softshadow_techniques::ray_traced::TRACE_COUNTS;
 use softshadow_techniques::{
     Block, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
 };
@@ -160,10 +162,16 @@ pub(crate) fn run(
         source.row(),
         contents.local.sub_scenes.len(),
     )?;
+    let occluders = match technique.wants_occluders() {
+        true => context.occluders(scene, &contents, lights)?,
+        false => Vec::new(),
+    };
+    collector.result.info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
     let program = VisibilityProgram {
         technique,
         scene: &contents,
         lights,
+        occluders: &occluders,
         receivers: source,
         blocks: blocks(source.count(), source.row(), technique.halo_rows() as usize, most),
         channels: channels as u32,
@@ -175,7 +183,8 @@ pub(crate) fn run(
         collector.result.info.plan = program.plan(task).explain();
     }
     collector.result.info.blocks = program.blocks.len();
-    let uploads: BTreeMap<ContentKey, Content> = contents.contents().map(|c| (c.key, c.clone())).collect();
+    let everything = contents.contents().chain(occluders.iter().flat_map(|o| o.contents()));
+    let uploads: BTreeMap<ContentKey, Content> = everything.map(|c| (c.key, c.clone())).collect();
     let total = program.stages() as u64;
     let mut done = 0;
     let report = engine.run(&program, &uploads, options.timing, &mut |stage: Option<StageReport>| {
@@ -188,11 +197,17 @@ pub(crate) fn run(
         on_progress(done, total)
     })?;
     if collector.unfinished > 0 {
-        let rays = collector.unfinished;
-        return Err(Error::Gpu(format!(
-            "the driver ended {rays} rays before they were done: the scene is too dense for its limit on loops; use another \
-             device, or split the scene"
-        )));
+        let count = collector.unfinished;
+        return Err(Error::Gpu(match technique {
+            Technique::DepthComplexity(_) => format!(
+                "{count} receivers have more silhouette edges before them than fit: the scene is too dense for depth_complexity; \
+                 use ray_traced"
+            ),
+            _ => format!(
+                "the driver ended {count} rays before they were done: the scene is too dense for its limit on loops; use another \
+                 device, or split the scene"
+            ),
+        }));
     }
     if report.stages as u64 != total {
         return Err(Error::Gpu(format!("only {} of {total} stages ran", report.stages)));
@@ -260,7 +275,12 @@ impl<'a> Collector<'a> {
     ) -> Self {
         let count = receivers.count() as usize;
         let size = lights.len() * count * channels;
-        let has_error = matches!(technique, Technique::RayTraced(_));
+        let sampled = match technique {
+            Technique::RayTraced(settings) => Some(settings.samples),
+            Technique::DepthComplexity(settings) => Some(settings.samples),
+            _ => None,
+        };
+        let has_error = sampled.is_some();
         let info = Info {
             adapter: context.adapter().clone(),
             technique: technique.clone(),
@@ -268,6 +288,9 @@ impl<'a> Collector<'a> {
             receivers: count,
             valid_receivers: 0,
             traced_receivers: 0,
+            area_receivers: 0,
+            silhouette_edges: 0,
+            cut_triangles: 0,
             wall_ms: 0.0,
             pass_ms: Vec::new(),
             bytes: Vec::new(),
@@ -280,13 +303,10 @@ impl<'a> Collector<'a> {
             standard_error: None,
             plan: String::new(),
         };
-        let masks = match technique {
-            Technique::RayTraced(settings) if options.sample_masks => {
-                let words = settings.samples.div_ceil(32) as usize;
-                Some(SampleMasks { words, bits: vec![u32::MAX; lights.len() * count * words] })
-            }
-            _ => None,
-        };
+        let masks = sampled.filter(|_| options.sample_masks).map(|samples| {
+            let words = samples.div_ceil(32) as usize;
+            SampleMasks { words, bits: vec![u32::MAX; lights.len() * count * words] }
+        });
         let placed = options.receivers.then(|| Placed {
             positions: vec![[f64::NAN; 3]; count],
             normals: vec![[0.0; 3]; count],
@@ -323,6 +343,12 @@ impl<'a> Collector<'a> {
             let counts: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
             self.result.info.traced_receivers += counts.first().map_or(0, |n| u64::from(*n));
             self.unfinished += counts.get(1).map_or(0, |n| u64::from(*n));
+        }
+        if let Some(bytes) = outputs.get(LIST_COUNTS) {
+            let counts: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+            self.result.info.silhouette_edges += u64::from(counts[2]);
+            self.unfinished += u64::from(counts[3]);
+            self.result.info.area_receivers += u64::from(counts[4]);
         }
         let (count, channels) = (self.result.receivers, self.result.channels);
         let copy = |label: &str, width: usize, into: &mut [f32]| {

@@ -41,10 +41,7 @@ pub(crate) struct PictureArrays<'py> {
 
 impl<'py> VisibilityArrays<'py> {
     fn new(py: Python<'py>, visibility: softshadow::Visibility) -> PyResult<Self> {
-        let samples = match &visibility.info.technique {
-            softshadow::Technique::RayTraced(settings) => settings.samples as usize,
-            _ => 0,
-        };
+        let samples = visibility.info.technique.samples() as usize;
         Ok(Self {
             info: json(&visibility.info)?,
             visible_samples: visibility.masks.map(|masks| masks.visible(samples).into_pyarray(py)),

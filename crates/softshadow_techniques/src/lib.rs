@@ -3,6 +3,7 @@
 //! A technique never names a device and never imports another; what two share lives in [`parts`].
 
 mod block;
+pub mod depth_complexity;
 pub mod hard_shadow_map;
 pub mod parts;
 mod program;
@@ -14,7 +15,9 @@ use softshadow_plan::{Plan, Values};
 use softshadow_scene::{Light, SceneError};
 
 pub use block::{Block, blocks};
+pub use depth_complexity::DepthComplexity;
 pub use hard_shadow_map::HardShadowMap;
+pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
 pub use parts::shading::Shading;
 pub use program::{StageTask, VisibilityProgram};
@@ -30,6 +33,8 @@ pub enum Technique {
     RayTraced(RayTraced),
     /// One depth map from the light's centre: what softness is compared with.
     HardShadowMap(HardShadowMap),
+    /// Silhouette edges and counters: as accurate as rays to the same samples.
+    DepthComplexity(DepthComplexity),
 }
 
 /// A setting out of range, or a request that a technique cannot serve.
@@ -55,7 +60,11 @@ impl Technique {
     /// Every technique with its default settings.
     #[must_use]
     pub fn defaults() -> Vec<Self> {
-        vec![Self::RayTraced(RayTraced::default()), Self::HardShadowMap(HardShadowMap::default())]
+        vec![
+            Self::RayTraced(RayTraced::default()),
+            Self::HardShadowMap(HardShadowMap::default()),
+            Self::DepthComplexity(DepthComplexity::default()),
+        ]
     }
 
     /// The name by which settings files and the command line know it.
@@ -64,7 +73,14 @@ impl Technique {
         match self {
             Self::RayTraced(_) => "ray_traced",
             Self::HardShadowMap(_) => "hard_shadow_map",
+            Self::DepthComplexity(_) => "depth_complexity",
         }
+    }
+
+    /// Whether it works on silhouette edges, and wants to know what hides each light.
+    #[must_use]
+    pub fn wants_occluders(&self) -> bool {
+        matches!(self, Self::DepthComplexity(_))
     }
 
     /// Checks the settings.
@@ -75,6 +91,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.check(),
             Self::HardShadowMap(settings) => settings.check(),
+            Self::DepthComplexity(settings) => settings.check(),
         }
     }
 
@@ -83,6 +100,7 @@ impl Technique {
     pub fn passes(&self) -> u32 {
         match self {
             Self::RayTraced(settings) => settings.passes,
+            Self::DepthComplexity(settings) => settings.passes,
             Self::HardShadowMap(_) => 1,
         }
     }
@@ -92,6 +110,7 @@ impl Technique {
     pub fn samples(&self) -> u32 {
         match self {
             Self::RayTraced(settings) => settings.samples,
+            Self::DepthComplexity(settings) => settings.samples,
             Self::HardShadowMap(_) => 1,
         }
     }
@@ -101,7 +120,7 @@ impl Technique {
     pub fn halo_rows(&self) -> u32 {
         match self {
             Self::RayTraced(settings) => u32::from(settings.probes > 0),
-            Self::HardShadowMap(_) => 0,
+            Self::HardShadowMap(_) | Self::DepthComplexity(_) => 0,
         }
     }
 
@@ -111,6 +130,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes),
             Self::HardShadowMap(_) => 4 * channels,
+            Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels),
         }
     }
 
@@ -120,6 +140,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::plan(request, settings),
             Self::HardShadowMap(settings) => hard_shadow_map::plan(request, settings),
+            Self::DepthComplexity(settings) => depth_complexity::plan(request, settings),
         }
     }
 
@@ -131,6 +152,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::values(request, settings, light, pass),
             Self::HardShadowMap(settings) => hard_shadow_map::values(request, settings, light),
+            Self::DepthComplexity(settings) => depth_complexity::values(request, settings, light, pass),
         }
     }
 }

@@ -1,9 +1,12 @@
 //! The program of a whole call: every block of receivers, every light, every progressive pass, one stage each.
 
+use std::sync::Arc;
+
 use softshadow_plan::{Host, Plan, Program, Step, Values};
 use softshadow_scene::Light;
 
 use crate::block::Block;
+use crate::parts::occluder_buffers::OccluderContents;
 use crate::parts::scene_buffers::SceneContents;
 use crate::request::{ReceiverSource, Request, Wants};
 use crate::{Technique, TechniqueError};
@@ -17,6 +20,8 @@ pub struct VisibilityProgram<'a> {
     pub scene: &'a SceneContents,
     /// The lights, in the caller's order.
     pub lights: &'a [Light],
+    /// What hides each light, where the technique asks for it; else empty.
+    pub occluders: &'a [Arc<OccluderContents>],
     /// Where receivers come from.
     pub receivers: ReceiverSource<'a>,
     /// Blocks of receivers.
@@ -65,6 +70,7 @@ impl VisibilityProgram<'_> {
             receivers: self.receivers,
             block: self.blocks[task.block],
             light: &self.lights[task.light],
+            occluders: self.occluders.get(task.light).map(Arc::as_ref),
             channels: self.channels,
             opens_block: task.light == 0 && task.pass == 0,
             first_light: task.light == 0,
@@ -97,6 +103,10 @@ impl VisibilityProgram<'_> {
     /// As [`Technique::check`] and [`Technique::values`].
     pub fn check(&self) -> Result<(), TechniqueError> {
         self.technique.check()?;
+        if self.technique.wants_occluders() && self.occluders.len() != self.lights.len() {
+            let reason = format!("{} given for {} lights", self.occluders.len(), self.lights.len());
+            return Err(TechniqueError::Setting { technique: self.technique.name(), setting: "occluders", reason });
+        }
         if let ReceiverSource::Points(points) = self.receivers {
             points.check_local(&self.scene.local.frame)?;
         }

@@ -21,10 +21,10 @@ use softshadow_plan::{Kernel, Over, Plan, ResourceId, Values};
 use softshadow_scene::{Light, MAX_SAMPLES, SamplePattern, pass_seed};
 
 use crate::TechniqueError;
-use crate::parts::VISIBILITY;
 use crate::parts::light_buffers::{self, SampleSet, Sampling};
-use crate::parts::shading::{self, Seen};
-use crate::parts::{receivers, scene_buffers};
+use crate::parts::pattern_name;
+use crate::parts::resolve::{BLOCKED, Masks};
+use crate::parts::{receivers, resolve, scene_buffers, shading};
 use crate::request::{ReceiverSource, Request};
 
 /// Settings of `ray_traced`.
@@ -50,31 +50,6 @@ impl Default for RayTraced {
     }
 }
 
-mod pattern_name {
-    use serde::de::Error as _;
-    use serde::{Deserialize, Deserializer, Serializer};
-    use softshadow_scene::SamplePattern;
-
-    const NAMES: [(&str, SamplePattern); 2] =
-        [("stratified", SamplePattern::Stratified), ("low_discrepancy", SamplePattern::LowDiscrepancy)];
-
-    pub(super) fn serialize<S: Serializer>(pattern: &SamplePattern, serializer: S) -> Result<S::Ok, S::Error> {
-        let name = NAMES.iter().find(|(_, p)| p == pattern).map_or("", |(name, _)| name);
-        serializer.serialize_str(name)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<SamplePattern, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        let found = NAMES.iter().find(|(n, _)| *n == name).map(|(_, pattern)| *pattern);
-        found.ok_or_else(|| D::Error::custom(format!("pattern '{name}' is neither 'stratified' nor 'low_discrepancy'")))
-    }
-}
-
-/// Label of their standard errors.
-pub const STANDARD_ERROR: &str = "standard error";
-/// Label of the masks of blocked samples.
-pub const BLOCKED: &str = "blocked samples";
-
 /// Label, before a sub-scene's number, of how many receivers needed rays and how many rays a driver cut short.
 pub const TRACE_COUNTS: &str = "trace counts";
 
@@ -84,8 +59,6 @@ const NARROW: Kernel = Kernel { file: "ray_traced/narrow.wgsl", entry: "narrow" 
 const COUNT_GROUPS: Kernel = Kernel { file: "ray_traced/count_groups.wgsl", entry: "count_groups" };
 const TRACE: Kernel = Kernel { file: "ray_traced/trace.wgsl", entry: "trace" };
 const CHOOSE: Kernel = Kernel { file: "ray_traced/choose.wgsl", entry: "choose" };
-const RESOLVE: Kernel = Kernel { file: "ray_traced/resolve.wgsl", entry: "resolve" };
-const RESOLVE_TEXTURED: Kernel = Kernel { file: "ray_traced/resolve.wgsl", entry: "resolve_textured" };
 
 /// `TraceRange` of `hierarchy.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -245,7 +218,8 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
             plan.outputs.push(counts);
         }
     }
-    append_results(&mut plan, request, settings, &light, [receivers, blocked, decided]);
+    let masks = Masks { blocked, decided, areas: None };
+    resolve::append(&mut plan, request, settings.samples, &light, receivers, masks);
     plan
 }
 
@@ -257,50 +231,6 @@ fn append_choice(plan: &mut Plan, over: Over, [sampling, receivers, blocked, dec
         .bind("receivers", receivers)
         .bind("blocked", blocked)
         .bind("decided", decided);
-}
-
-fn append_results(
-    plan: &mut Plan,
-    request: &Request<'_>,
-    settings: &RayTraced,
-    light: &light_buffers::LightBuffers,
-    [receivers, blocked, decided]: [ResourceId; 3],
-) {
-    let bytes = request.block.count as u64 * 4 * u64::from(request.channels);
-    let visibility = plan.persistent(VISIBILITY, bytes);
-    let standard_error = plan.persistent(STANDARD_ERROR, bytes);
-    let textured = request.channels == 3;
-    let over = Over::Items { count: request.block.count as u32, work_per_item: settings.words() };
-    let radiance = textured.then(|| light_buffers::append_radiance(plan, settings.samples));
-    let kernel = if textured { RESOLVE_TEXTURED } else { RESOLVE };
-    let pass = plan.compute("resolve", "turns masks into visibility and its standard error", kernel, over);
-    pass.bind("sampling", light.sampling)
-        .bind("decided", decided)
-        .bind("blocked", blocked)
-        .bind("visibility", visibility)
-        .bind("standard_error", standard_error);
-    if let Some(radiance) = radiance {
-        pass.bind("sample_radiance", radiance);
-    }
-    match request.wants.picture {
-        None => {}
-        Some(shading::Shading::Integrated) => {
-            let seen = Seen::Masks { blocked, decided };
-            shading::append(plan, request, receivers, light, seen, settings.samples);
-        }
-        // The visibility is known after the last pass only.
-        Some(shading::Shading::Modulated) if !request.closes_light => {}
-        Some(shading::Shading::Modulated) => {
-            shading::append(plan, request, receivers, light, Seen::Values(visibility), settings.samples);
-        }
-    }
-    if request.closes_light {
-        plan.outputs.push(visibility);
-        plan.outputs.extend(request.wants.standard_error.then_some(standard_error));
-        plan.outputs.extend(request.wants.sample_masks.then_some(blocked));
-    }
-    // Everybody needs to know which pixels see anything, and that stands in the receivers.
-    plan.outputs.extend(request.opens_block.then_some(receivers));
 }
 
 /// The values of the plan's parameters for one light and pass.

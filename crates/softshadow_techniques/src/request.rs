@@ -4,6 +4,7 @@ use softshadow_plan::Host;
 use softshadow_scene::{Camera, Light, Points};
 
 use crate::block::Block;
+use crate::parts::occluder_buffers::OccluderContents;
 use crate::parts::scene_buffers::SceneContents;
 use crate::parts::shading::Shading;
 
@@ -58,6 +59,8 @@ pub struct Request<'a> {
     pub block: Block,
     /// The light that the plan is for. Plans of lights of one kind are equal.
     pub light: &'a Light,
+    /// What hides this light, for techniques that ask for it.
+    pub occluders: Option<&'a OccluderContents>,
     /// Whether any light of the call has a texture: then values have three channels.
     pub channels: u32,
     /// This is the first light and pass of the block: receivers are placed, pictures begin.

@@ -8,10 +8,13 @@ use std::collections::BTreeSet;
 use std::mem::{offset_of, size_of};
 use std::path::Path;
 
+use softshadow_scene::occluders::NO_SIDE;
 use softshadow_scene::{BvhNode, Corner, LocalPoint};
-use softshadow_shaders::module;
+use softshadow_shaders::{EMBEDDED, module};
+use softshadow_techniques::depth_complexity::{ClusterRange, FoldSettings, FrameRecord};
 use softshadow_techniques::hard_shadow_map::{ShadowView, ShadowViews};
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
+use softshadow_techniques::parts::occluder_buffers::{EdgeRecord, FaceRecord, IncidentFace};
 use softshadow_techniques::parts::receivers::{CameraClip, CameraRays, PointRange, RECEIVER_BYTES, Receiver, SubScene};
 use softshadow_techniques::parts::shading::{MaterialRecord, ShadingRecord};
 use softshadow_techniques::ray_traced::{ProbeImage, TraceRange};
@@ -26,7 +29,7 @@ struct Layout {
 /// A Rust struct: its name, its bytes by the compiler, the WGSL file and the struct there.
 type Pair = (&'static str, usize, &'static str, &'static str);
 
-const PAIRS: [Pair; 15] = [
+const PAIRS: [Pair; 22] = [
     ("Receiver", size_of::<Receiver>(), "shared/receiver.wgsl", "Receiver"),
     ("CameraClip", size_of::<CameraClip>(), "receivers/draw_triangle_ids.wgsl", "CameraClip"),
     ("CameraRays", size_of::<CameraRays>(), "receivers/place_on_triangles.wgsl", "CameraRays"),
@@ -42,6 +45,13 @@ const PAIRS: [Pair; 15] = [
     ("Corner", size_of::<Corner>(), "shared/triangle.wgsl", "Corner"),
     ("ProbeImage", size_of::<ProbeImage>(), "ray_traced/choose.wgsl", "ProbeImage"),
     ("ShadowView", size_of::<ShadowView>(), "hard_shadow_map/view.wgsl", "ShadowView"),
+    ("FaceRecord", size_of::<FaceRecord>(), "depth_complexity/occluders.wgsl", "Face"),
+    ("EdgeRecord", size_of::<EdgeRecord>(), "depth_complexity/occluders.wgsl", "OccluderEdge"),
+    ("IncidentFace", size_of::<IncidentFace>(), "depth_complexity/occluders.wgsl", "IncidentFace"),
+    ("BvhNode", size_of::<BvhNode>(), "depth_complexity/tree.wgsl", "TreeNode"),
+    ("FrameRecord", size_of::<FrameRecord>(), "depth_complexity/frame.wgsl", "LightFrame"),
+    ("ClusterRange", size_of::<ClusterRange>(), "depth_complexity/clusters.wgsl", "ClusterRange"),
+    ("FoldSettings", size_of::<FoldSettings>(), "depth_complexity/fold.wgsl", "FoldSettings"),
 ];
 
 /// The one struct that holds others.
@@ -83,7 +93,9 @@ fn layout(body: &str) -> Layout {
         members.push((name.to_owned(), bytes));
         bytes += match kind {
             "f32" | "u32" => 4,
+            "[f32; 2]" => 8,
             "[f32; 3]" => 12,
+            "[u32; 4]" => 16,
             "[ShadowView; 6]" => 6 * size_of::<ShadowView>() as u32,
             other => panic!("teach this test the size of '{other}'"),
         };
@@ -146,6 +158,110 @@ fn lists_of_candidates_are_as_long_as_plans_say() {
     }
 }
 
+/// The value of a constant in a source text, Rust or WGSL.
+fn constant(text: &str, name: &str) -> Option<u64> {
+    let value = text.split_once(&format!("const {name}: "))?.1.split_once(" = ")?.1.split_once(';')?.0;
+    let digits = value.trim_end_matches('u').replace('_', "");
+    match digits.strip_prefix("0x") {
+        Some(hex) => u64::from_str_radix(hex, 16).ok(),
+        None => digits.parse().ok(),
+    }
+}
+
+fn shader(file: &str) -> &'static str {
+    EMBEDDED.iter().find(|(name, _)| *name == file).unwrap_or_else(|| panic!("no file '{file}'")).1
+}
+
+/// Constants of `depth_complexity.rs`, each with what the kernels make of it.
+fn counted_by_kernels() -> [(&'static str, u64); 9] {
+    let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/{file}.wgsl"), name).bytes);
+    let value = |file: &str, name| constant(shader(&format!("depth_complexity/{file}.wgsl")), name).unwrap();
+    [
+        ("TILE", value("tiles", "TILE")),
+        ("CLUSTER", value("clusters", "CLUSTER")),
+        ("CHUNK_BYTES", 4 * value("tiles", "CHUNK")),
+        ("COUNT_BYTES", bytes("tiles", "ListCounts")),
+        ("PART_BYTES", bytes("tiles", "TilePart")),
+        ("SLOT_BYTES", bytes("tiles", "Slot")),
+        ("CLUSTER_BYTES", bytes("clusters", "Cluster")),
+        ("MOST_SAMPLES", bytes("frame", "FrameSamples") / 16),
+        ("MOST_CORNERS", bytes("fold", "Outline") / 16),
+    ]
+}
+
+/// Names of the constants of a Rust text that the kernels contradict.
+fn contradicted(text: &str) -> Vec<&'static str> {
+    let wrong = counted_by_kernels().into_iter().filter(|(name, value)| constant(text, name) != Some(*value));
+    wrong.map(|(name, _)| name).collect()
+}
+
+fn source(path: &str) -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+}
+
+#[test]
+fn what_depth_complexity_counts_is_what_its_kernels_count() {
+    let text = source("src/depth_complexity.rs");
+    assert_eq!(contradicted(&text), Vec::<&str>::new());
+    // Any of them one off, or gone, is named.
+    for (name, value) in counted_by_kernels() {
+        let written = text.lines().find(|line| line.starts_with(&format!("const {name}: "))).unwrap();
+        let (head, _) = written.split_once(" = ").unwrap();
+        let spoilt = text.replace(written, &format!("{head} = {};", value + 1));
+        assert_eq!(contradicted(&spoilt), [name]);
+        assert_eq!(contradicted(&text.replace(written, "")), [name]);
+    }
+}
+
+#[test]
+fn lists_of_edges_lie_as_plans_say() {
+    // A list's head is two words for each of a tile's two parts; a chunk is the next one, a count, and edges.
+    let tiles = shader("depth_complexity/tiles.wgsl");
+    assert!(tiles.contains("return 4u * tile_count;"));
+    assert!(source("src/depth_complexity.rs").contains("u64::from(tile_count) * (16 + CHUNKS_PER_TILE * CHUNK_BYTES)"));
+    let of = |name| constant(tiles, name).unwrap();
+    assert_eq!(of("CHUNK"), of("CHUNK_EDGES") + 2);
+    // A cluster, and a group of them, has a bit for each.
+    assert_eq!(constant(shader("depth_complexity/clusters.wgsl"), "CLUSTER"), Some(32));
+    // The front door reads these words by number.
+    let counts = ["parts", "chunks", "edges", "unfinished", "by_area", "reserved0", "reserved1", "reserved2"];
+    let words = counts.iter().zip(0..).map(|(name, word)| ((*name).to_owned(), 4 * word));
+    assert_eq!(twin("depth_complexity/tiles.wgsl", "ListCounts").members, words.collect::<Vec<_>>());
+}
+
+#[test]
+fn faces_and_leaves_are_packed_alike() {
+    let occluders = shader("depth_complexity/occluders.wgsl");
+    assert_eq!(constant(occluders, "NO_SIDE"), Some(u64::from(NO_SIDE)));
+    let bits = constant(&source("../softshadow_scene/src/bvh.rs"), "LEAF_BITS");
+    assert!(bits.is_some());
+    assert_eq!(constant(shader("depth_complexity/tree.wgsl"), "LEAF_BITS"), bits);
+}
+
+#[test]
+fn structs_of_depth_complexity_are_the_same_in_every_kernel() {
+    let kernels =
+        ["silhouettes", "bound_clusters", "reference_depth", "bound_tiles", "cull", "size_fold", "fold"].map(|name| {
+            let file = format!("depth_complexity/{name}.wgsl");
+            module(&file).unwrap()
+        });
+    let homes = [
+        ("frame", &["LightFrame", "FrameSamples"][..]),
+        ("occluders", &["Face", "OccluderEdge", "IncidentFace"]),
+        ("clusters", &["Cluster", "ClusterRange"]),
+        ("tiles", &["TilePart", "Slot", "ListCounts"]),
+        ("tree", &["TreeNode"]),
+    ];
+    for (file, names) in homes {
+        for name in names {
+            let home = twin(&format!("depth_complexity/{file}.wgsl"), name);
+            let uses = kernels.iter().filter_map(|kernel| kernel.structs.get(*name));
+            let same = uses.map(|s| Layout { members: s.members.clone(), bytes: s.bytes } == home).collect::<Vec<_>>();
+            assert!(!same.is_empty() && same.iter().all(|same| *same), "{name}: {same:?}");
+        }
+    }
+}
+
 #[test]
 fn the_text_says_what_the_compiler_does() {
     macro_rules! offsets {
@@ -188,4 +304,8 @@ fn a_shifted_renamed_missing_or_longer_member_is_seen() {
     // The padding that WGSL puts behind three floats and Rust does not.
     let body = "\n    /// Direction.\n    pub way: [f32; 3],\n    pub reach: [f32; 3],\n";
     assert_eq!(layout(body).members, [("way".to_owned(), 0), ("reach".to_owned(), 12)]);
+    // Pairs and fours of scalars are no longer than they are.
+    let body = "\n    low: [f32; 2],\n    sides: [u32; 4],\n    count: u32,\n";
+    let members = [("low", 0), ("sides", 8), ("count", 24)].map(|(name, at)| (name.to_owned(), at));
+    assert_eq!(layout(body), Layout { members: members.to_vec(), bytes: 28 });
 }

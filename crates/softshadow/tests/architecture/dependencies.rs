@@ -46,7 +46,7 @@ const ALLOWED: [(&str, &[&str]); 10] = [
     ("softshadow_plan", &["softshadow_shaders"]),
     ("softshadow_techniques", &["softshadow_plan", "softshadow_scene", "softshadow_shaders"]),
     ("softshadow_engine", &["softshadow_plan", "softshadow_shaders"]),
-    ("softshadow_native", &["softshadow_plan", "softshadow_scene"]),
+    ("softshadow_native", &["softshadow_scene"]),
     (
         "softshadow",
         &["softshadow_engine", "softshadow_measure", "softshadow_plan", "softshadow_scene", "softshadow_techniques"],

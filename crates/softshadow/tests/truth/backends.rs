@@ -2,7 +2,7 @@
 
 use softshadow::{Context, DeviceChoice, DeviceKind, Options, Receivers, Visibility, adapters, visibility};
 
-use crate::common::{Random, hard_shadow_map, ray_traced, shipped, surface_points};
+use crate::common::{Random, depth_complexity, hard_shadow_map, ray_traced, shipped, surface_points};
 
 /// Set where Mesa's drivers are installed, so that a missing adapter fails instead of being skipped.
 const EXPECT: &str = "SOFTSHADOW_EXPECT_ADAPTER";
@@ -50,7 +50,7 @@ fn vulkan_and_gl_agree() {
     let (scene, light, camera) = shipped("hall", [160, 120]);
     let mut faults = Vec::new();
     let floor = Random(4).points(20_000, [-4.0, 4.0], [0.0, 0.0], [-5.0, 5.0]);
-    for technique in [ray_traced(64), hard_shadow_map(1024)] {
+    for technique in [ray_traced(64), hard_shadow_map(1024), depth_complexity(64)] {
         for (name, receivers) in
             [("camera", Receivers::Camera(camera)), ("points", surface_points(floor.clone(), [0.0, 1.0, 0.0]))]
         {
@@ -59,7 +59,10 @@ fn vulkan_and_gl_agree() {
                 let options = Options::default();
                 visibility(context, &scene, light, &receivers, &technique, &options, &mut |_, _| true).unwrap()
             });
-            let (different, all) = differing(&a, &b, 1e-6);
+            // Counts of samples are equal although the two place receivers a rounding apart. Areas follow the receiver: next to an
+            // occluder its place moves them by up to 1e-4.
+            let tolerance = if technique.name() == "depth_complexity" { 2e-4 } else { 1e-6 };
+            let (different, all) = differing(&a, &b, tolerance);
             println!("Vulkan and GL, {}, {name}: {different} of {all} receivers differ", technique.name());
             let too_many = different * 10_000 > all;
             faults.extend(too_many.then(|| format!("{}, {name}: {different} of {all}", technique.name())));
@@ -68,7 +71,7 @@ fn vulkan_and_gl_agree() {
             let mut spoilt = b.clone();
             spoilt.values.rotate_left(1);
             spoilt.valid.rotate_left(1);
-            assert!(differing(&a, &spoilt, 1e-6).0 * 1000 > all);
+            assert!(differing(&a, &spoilt, tolerance).0 * 1000 > all);
         }
     }
     assert!(faults.is_empty(), "Vulkan and GL differ: {faults:?}");

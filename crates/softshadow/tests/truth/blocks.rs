@@ -4,7 +4,7 @@ use softshadow::{
     Context, DeviceChoice, Error, Light, Options, RayTraced, Receivers, Scene, Technique, Visibility, visibility,
 };
 
-use crate::common::{Random, bits, context, hard_shadow_map, rays, shipped, surface_points};
+use crate::common::{Random, bits, context, depth_complexity, hard_shadow_map, rays, shipped, surface_points};
 
 fn limited(
     scene: &Scene,
@@ -42,6 +42,8 @@ fn a_small_memory_limit_changes_no_bit() {
         (&camera, &hard_shadow_map(512), 50_000),
         (&floor, &plain, 1_000_000),
         (&floor, &hard_shadow_map(512), 900_000),
+        (&camera, &depth_complexity(40), 250_000),
+        (&floor, &depth_complexity(128), 5_000_000),
     ] {
         let whole = limited(&scene, &light, receivers, technique, 1 << 30).unwrap();
         let parts = limited(&scene, &light, receivers, technique, limit).unwrap();

@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 
 use softshadow::{
-    Camera, Context, DeviceChoice, HardShadowMap, Light, LightShape, Options, Points, RayTraced, Receivers, Scene,
-    Technique, Visibility, look_at, procedural, visibility,
+    Camera, Context, DepthComplexity, DeviceChoice, HardShadowMap, Light, LightShape, Options, Points, RayTraced,
+    Receivers, Scene, Technique, Visibility, look_at, procedural, visibility,
 };
 
 use crate::shapes::Point;
@@ -31,6 +31,10 @@ pub(crate) fn ray_traced(samples: u32) -> Technique {
 
 pub(crate) fn hard_shadow_map(resolution: u32) -> Technique {
     Technique::HardShadowMap(HardShadowMap { resolution })
+}
+
+pub(crate) fn depth_complexity(samples: u32) -> Technique {
+    Technique::DepthComplexity(DepthComplexity { samples, ..DepthComplexity::default() })
 }
 
 pub(crate) fn points(positions: Vec<Point>) -> Receivers {

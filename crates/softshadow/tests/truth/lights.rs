@@ -6,7 +6,8 @@ use softshadow::{
 };
 
 use crate::common::{
-    Random, bits, context, hard_shadow_map, lamp, points, ray_traced, rays, rectangle, see, shipped, surface_points,
+    Random, bits, context, depth_complexity, hard_shadow_map, lamp, points, ray_traced, rays, rectangle, see, shipped,
+    surface_points,
 };
 use crate::shapes::{Point, plate, scene};
 
@@ -29,7 +30,7 @@ fn flat_lights_shine_to_the_front_and_round_ones_all_around() {
     let far = scene(&plate([50.0, 51.0], [50.0, 51.0], 0.0)[..1]);
     let (front, back, inside) = ([0.2, 0.1, 0.0], [0.2, 0.1, 2.0], [0.0, 0.1, 1.1]);
     for (name, light) in one_of_each() {
-        for technique in [ray_traced(64), hard_shadow_map(64)] {
+        for technique in [ray_traced(64), hard_shadow_map(64), depth_complexity(64)] {
             let values = see(&far, std::slice::from_ref(&light), &points(vec![front, back, inside]), &technique).values;
             let expected = match name {
                 "sphere" | "sun" => [1.0, 1.0, 1.0],

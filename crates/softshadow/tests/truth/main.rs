@@ -13,6 +13,7 @@ mod closed_forms;
 mod common;
 mod contact;
 mod coverage;
+mod depth_complexity;
 mod hard_shadows;
 mod invariance;
 mod lights;

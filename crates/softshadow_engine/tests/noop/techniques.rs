@@ -1,12 +1,15 @@
 //! Every technique over a grid of calls: the device accepts every plan, and outputs have exact sizes.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use softshadow_engine::{Engine, RunReport, StageReport, Timing};
 use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, Scene, look_at};
+use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
-    HardShadowMap, RayTraced, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
+    DepthComplexity, HardShadowMap, OccluderContents, RayTraced, ReceiverSource, SceneContents, Shading, Technique,
+    VisibilityProgram, Wants, blocks,
 };
 
 use crate::programs::engine;
@@ -27,7 +30,7 @@ fn lights() -> Vec<Light> {
     let texture = LightTexture::new(1, 1, vec![[1.0, 0.5, 0.0]]).unwrap();
     vec![
         light(rectangle.clone(), 5.0).unwrap(),
-        light(LightShape::Sphere { radius: 0.3 }, 0.25).unwrap(),
+        light(LightShape::Sphere { radius: 0.2 }, 0.25).unwrap(),
         light(LightShape::Sun { angular_diameter: 0.01 }, 5.0).unwrap(),
         light(rectangle, 5.0).unwrap().with_texture(texture).unwrap(),
     ]
@@ -38,13 +41,22 @@ fn techniques() -> Vec<Technique> {
         |samples, probes, passes| Technique::RayTraced(RayTraced { samples, probes, passes, ..RayTraced::default() });
     let mut all = vec![traced(64, 0, 1), traced(33, 8, 3), traced(1, 0, 1)];
     all.extend([16, 300].map(|resolution| Technique::HardShadowMap(HardShadowMap { resolution })));
+    let folded =
+        |samples, passes| Technique::DepthComplexity(DepthComplexity { samples, passes, ..DepthComplexity::default() });
+    all.extend([folded(64, 1), folded(33, 2), folded(256, 1)]);
     all
+}
+
+fn occluders(scene: &SceneContents, lights: &[Light]) -> Vec<Arc<OccluderContents>> {
+    let of = |light| OccluderContents::new(&scene.local, boundary_of(&scene.local, light)).unwrap();
+    lights.iter().map(|light| Arc::new(of(light))).collect()
 }
 
 /// Runs a program and returns the size of every output by stage.
 fn sizes(engine: &Engine, program: &VisibilityProgram<'_>) -> (RunReport, Vec<BTreeMap<String, usize>>) {
     program.check().unwrap();
-    let uploads: BTreeMap<ContentKey, Content> = program.scene.contents().map(|c| (c.key, c.clone())).collect();
+    let everything = program.scene.contents().chain(program.occluders.iter().flat_map(|o| o.contents()));
+    let uploads: BTreeMap<ContentKey, Content> = everything.map(|c| (c.key, c.clone())).collect();
     let mut rows = Vec::new();
     let report = engine
         .run(program, &uploads, Timing::Device, &mut |stage: Option<StageReport>| {
@@ -67,6 +79,7 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
     let mut runs = 0;
     for technique in techniques() {
         for scene in &scenes {
+            let occluders = occluders(scene, &lights);
             for receivers in [ReceiverSource::Camera(&camera), ReceiverSource::Points(&points)] {
                 for picture in [None, Some(Shading::Integrated), Some(Shading::Modulated)] {
                     for most in [usize::MAX, 100] {
@@ -77,6 +90,7 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
                             technique: &technique,
                             scene,
                             lights: &lights,
+                            occluders: &occluders,
                             receivers,
                             blocks,
                             channels,
@@ -92,7 +106,7 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
             }
         }
     }
-    assert_eq!(runs, 5 * 2 * 2 * 3 * 2);
+    assert_eq!(runs, 8 * 2 * 2 * 3 * 2);
 }
 
 /// Outputs of every stage against what is asked for: values with a light's last pass, receivers and pictures once a block.
@@ -110,11 +124,15 @@ fn check_sizes(program: &VisibilityProgram<'_>, rows: &[BTreeMap<String, usize>]
                 expected.insert(format!("trace counts {index}"), 16);
             }
         }
+        if matches!(program.technique, Technique::DepthComplexity(_)) {
+            expected.insert("list counts".to_owned(), 32);
+        }
         if last_pass {
             expected.insert("visibility".to_owned(), count * 4 * 3);
-            if let Technique::RayTraced(settings) = program.technique {
+            if !matches!(program.technique, Technique::HardShadowMap(_)) {
+                let words = program.technique.samples().div_ceil(32) as usize;
                 expected.insert("standard error".to_owned(), count * 4 * 3);
-                expected.insert("blocked samples".to_owned(), count * 4 * settings.samples.div_ceil(32) as usize);
+                expected.insert("blocked samples".to_owned(), count * 4 * words);
             }
         }
         if last_pass && task.light + 1 == program.lights.len() && program.wants.picture.is_some() {
@@ -135,6 +153,7 @@ fn one_light_in_one_block_is_one_submission() {
             technique: &technique,
             scene: &scene,
             lights: &lights[..1],
+            occluders: &occluders(&scene, &lights[..1]),
             receivers,
             blocks: blocks(receivers.count(), receivers.row(), 0, usize::MAX),
             channels: 1,
@@ -155,6 +174,7 @@ fn an_empty_scene_is_run_too() {
             technique: &technique,
             scene: &scene,
             lights: &lights,
+            occluders: &occluders(&scene, &lights),
             receivers: ReceiverSource::Points(&points),
             blocks: blocks(9, 1, 0, 4),
             channels: 3,

@@ -1,7 +1,10 @@
 //! Steps that techniques share.
 
 pub mod light_buffers;
+pub mod occluder_buffers;
+pub(crate) mod pattern_name;
 pub mod receivers;
+pub mod resolve;
 pub mod scene_buffers;
 pub mod shading;
 

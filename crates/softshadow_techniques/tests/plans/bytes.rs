@@ -2,10 +2,23 @@
 
 use std::collections::BTreeMap;
 
-use softshadow_scene::LightShape;
-use softshadow_techniques::{ReceiverSource, Request, Shading, Technique};
+use softshadow_plan::{Over, Work, check};
+use softshadow_scene::{LightShape, LocalScene, Material, Mesh, Scene};
+use softshadow_techniques::parts::occluder_buffers::boundary_of;
+use softshadow_techniques::{
+    DepthComplexity, OccluderContents, ReceiverSource, Request, SceneContents, Shading, Technique,
+};
 
-use crate::requests::{Fixture, techniques};
+use crate::requests::{Fixture, POINTS, stage, techniques};
+
+/// Faces, edges, and faces at edges that hide the light: of every sheet in front of it two triangles, whose five sides share one.
+fn hidden_by(request: &Request<'_>) -> [u64; 3] {
+    let height = request.light.local(&request.scene.local.frame).center.z as f32;
+    let has_front = matches!(request.light.shape(), LightShape::Rectangle { .. });
+    let is_in_front = |triangle: &[[f32; 3]; 3]| !has_front || triangle.iter().all(|corner| corner[2] < height);
+    let faces = request.scene.local.triangles().filter(is_in_front).count() as u64;
+    [faces, faces / 2 * 5, faces * 3]
+}
 
 /// Bytes by label that a plan must have, and no other.
 fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64> {
@@ -14,12 +27,14 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
     let count = request.block.count as u64;
     let sub_scenes = &request.scene.local.sub_scenes;
     let camera = matches!(request.receivers, ReceiverSource::Camera(_));
-    let (traced, samples) = match technique {
-        Technique::RayTraced(settings) => (Some(settings), u64::from(settings.samples)),
-        _ => (None, 64),
+    let sampled = match technique {
+        Technique::RayTraced(settings) => Some(u64::from(settings.samples)),
+        Technique::DepthComplexity(settings) => Some(u64::from(settings.samples)),
+        _ => None,
     };
-    // Rays know their final visibility after the last pass, and only then is a light modulated by it.
-    let too_early = traced.is_some() && request.wants.picture == Some(Shading::Modulated) && !request.closes_light;
+    let samples = sampled.unwrap_or(64);
+    // Samples know their final visibility after the last pass, and only then is a light modulated by it.
+    let too_early = sampled.is_some() && request.wants.picture == Some(Shading::Modulated) && !request.closes_light;
     let picture = request.wants.picture.is_some() && !too_early;
 
     // Four words, and a receiver with the ends of its walk for each that may need rays; `layouts.rs` compares with the kernels.
@@ -44,9 +59,11 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
         add("point range".into(), 4);
     }
     for (n, sub_scene) in sub_scenes.iter().enumerate() {
-        let triangles = sub_scene.corners.len() as u64 / 3;
-        add(format!("corners {n}"), triangles * 48);
-        if traced.is_some() {
+        // Silhouettes need no corners: they are there for the camera alone.
+        if !technique.wants_occluders() || request.opens_block && camera {
+            add(format!("corners {n}"), sub_scene.corners.len() as u64 / 3 * 48);
+        }
+        if matches!(technique, Technique::RayTraced(_)) {
             add(format!("hierarchy {n}"), sub_scene.nodes.len() as u64 * 32);
         }
     }
@@ -86,13 +103,43 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
             (0..views).for_each(|n| add(format!("shadow view {n}"), 64));
             add("shadow views".into(), 6 * 64 + 16);
         }
+        Technique::DepthComplexity(_) => {
+            let ([faces, edges, sides], tiles) = (hidden_by(request), count.div_ceil(64));
+            // A face: its plane, its triangle, how flat it is, and four sides. An edge: two ends and its faces. A binding is never empty.
+            add("faces".into(), faces.max(1) * 48);
+            add("edges".into(), edges.max(1) * 32);
+            // So few faces have a leaf each.
+            add("face hierarchy".into(), (2 * faces).max(2) * 32 - 32);
+            add("light frame".into(), 128);
+            add("frame samples".into(), 256 * 16);
+            add("receiver order".into(), count * 4);
+            add("slots".into(), tiles * 64 * 16);
+            add("running counts".into(), 32);
+            add("list counts".into(), 32);
+            add("blocked samples".into(), count * samples.div_ceil(32) * 4);
+            add("decided samples".into(), count * 4);
+            add("standard error".into(), count * 4 * u64::from(request.channels));
+            if edges > 0 {
+                add("faces at edges".into(), sides * 32);
+                add("cluster range".into(), 16);
+                add("clusters".into(), edges.div_ceil(32) * 32);
+                add("groups of clusters".into(), edges.div_ceil(32 * 32) * 32);
+                // Two parts a tile, each five planes and a box; two words each for where its list begins, and 64 chunks of 32 words.
+                add("tile parts".into(), tiles * 2 * (5 * 16 + 32));
+                add("edge lists".into(), tiles * (2 * 8 + 64 * 128));
+                add("visible areas".into(), count * 4);
+                add("fold dispatch".into(), 12);
+                add("fold settings".into(), 16);
+                add("light outline".into(), 64 * 16);
+            }
+        }
         _ => panic!("count the bytes of '{}' here", technique.name()),
     }
-    if traced.is_some() || picture {
+    if sampled.is_some() || picture {
         add("sampling".into(), 32);
         add("light samples".into(), samples * 16);
     }
-    if picture || traced.is_some() && request.channels == 3 {
+    if picture || sampled.is_some() && request.channels == 3 {
         add("sample radiance".into(), samples * 16);
     }
     if picture {
@@ -108,7 +155,7 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
 fn bytes_are_exact_over_the_whole_grid() {
     let fixture = Fixture::new();
     for technique in techniques() {
-        for request in fixture.requests() {
+        for request in fixture.requests(&technique) {
             let plan = technique.plan(&request);
             let given: BTreeMap<String, u64> = plan.memory().into_iter().map(|(l, b)| (l.to_owned(), b)).collect();
             assert_eq!(given, counted(&technique, &request), "{technique:?}\n{plan}");
@@ -120,7 +167,7 @@ fn bytes_are_exact_over_the_whole_grid() {
 fn a_block_is_sized_by_what_a_receiver_takes() {
     // The front door divides its memory limit by this number: it must be what grows with the receivers.
     let fixture = Fixture::new();
-    for technique in techniques() {
+    for technique in techniques().iter().filter(|t| !t.wants_occluders()) {
         for (scene, channels) in [(0, 1), (0, 3), (1, 1), (1, 3), (2, 1), (2, 3)] {
             let request = Request { channels, ..fixture.request(scene, fixture.points()) };
             let total = |count: usize| {
@@ -129,7 +176,7 @@ fn a_block_is_sized_by_what_a_receiver_takes() {
                 technique.plan(&request).memory().iter().map(|(_, bytes)| bytes).sum::<u64>()
             };
             // Bits of samples and how many are decided; both lists of each sub-scene; values and their errors.
-            let expected = match &technique {
+            let expected = match technique {
                 Technique::RayTraced(settings) => {
                     let words = u64::from(settings.samples.div_ceil(32));
                     4 * words + 4 + 24 * scene as u64 + 8 * u64::from(channels)
@@ -144,6 +191,79 @@ fn a_block_is_sized_by_what_a_receiver_takes() {
             let one_more = technique.bytes_per_receiver(u64::from(channels), sub_scenes + 1);
             assert_eq!(one_more - expected, if matches!(technique, Technique::RayTraced(_)) { 24 } else { 0 });
         }
+    }
+}
+
+#[test]
+fn a_block_in_tiles_is_sized_by_no_less_than_a_receiver_takes() {
+    let fixture = Fixture::new();
+    for technique in techniques() {
+        let Technique::DepthComplexity(settings) = &technique else { continue };
+        let words = u64::from(settings.samples.div_ceil(32));
+        for (scene, channels) in [(0, 1), (0, 3), (1, 1), (1, 3), (2, 1), (2, 3)] {
+            let request = Request { channels, ..fixture.request(scene, fixture.points()) };
+            let total = |count: u64| {
+                let mut request = request;
+                request.block.count = count as usize;
+                technique.plan(&request).memory().iter().map(|(_, bytes)| bytes).sum::<u64>()
+            };
+            // Its place in the order, its slot, its bits, how many are decided, and values with their errors; the receiver and its point.
+            let alone = 4 + 16 + 4 * words + 4 + 8 * u64::from(channels) + 64;
+            // Where there are edges an area, and what 64 receivers share.
+            let [with_area, tile] = if scene == 0 { [alone, 0] } else { [alone + 4, 2 * 112 + 16 + 64 * 128] };
+            assert_eq!(total(65 * 64) - total(64), 64 * (64 * with_area + tile), "{technique:?} in scene {scene}");
+            // A tile that is not full has its slots and lists all the same.
+            assert_eq!(total(65) - total(64), 63 * 16 + with_area + tile);
+            assert_eq!(total(64) - total(2), 62 * (with_area - 16));
+
+            let sub_scenes = request.scene.local.sub_scenes.len() as u64;
+            let estimate = technique.bytes_per_receiver(u64::from(channels), sub_scenes);
+            assert_eq!(estimate, alone - 64 + 4 + 132, "132 is a 64th of what a tile takes, rounded up");
+            assert_eq!(estimate, technique.bytes_per_receiver(u64::from(channels), sub_scenes + 1));
+            for count in [64 * 64, 100_000, 1_000_003] {
+                let (fixed, taken) = (total(64) - 64 * with_area - tile, total(count));
+                assert!(taken - fixed <= count * (64 + estimate) + 64 * 16 + tile, "{count} receivers, {technique:?}");
+                // And not so much more that blocks would be small for nothing.
+                assert!(scene == 0 || taken >= count * (64 + estimate - 1), "{count} receivers, {technique:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn clusters_of_edges_are_as_many_as_edges_need() {
+    // Triangles apart from each other: three edges each, so that clusters and groups of them are counted beyond the first.
+    for (triangles, clusters, groups) in [(10, 1, 1), (11, 2, 1), (341, 32, 1), (342, 33, 2), (683, 65, 3)] {
+        let positions: Vec<[f64; 3]> = (0..triangles)
+            .flat_map(|n| [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5]].map(|[x, y]| [f64::from(n) + x, y, 0.0]))
+            .collect();
+        let faces = (0..triangles).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
+        let mesh = Mesh::new("leaves", positions, faces, Material::default()).unwrap();
+        let scene = SceneContents::new(LocalScene::new(&Scene::new(vec![mesh]).unwrap(), None, 1 << 20));
+        let fixture = Fixture::new();
+        let occluders = OccluderContents::new(&scene.local, boundary_of(&scene.local, &fixture.lights[3])).unwrap();
+        let request = Request {
+            scene: &scene,
+            light: &fixture.lights[3],
+            occluders: Some(&occluders),
+            ..fixture.request(1, fixture.points())
+        };
+        let (plan, values) = stage(&Technique::DepthComplexity(DepthComplexity::default()), &request);
+        let bytes: BTreeMap<&str, u64> = plan.memory().into_iter().collect();
+        let edges = 3 * u64::from(triangles);
+        let labels = ["faces", "edges", "faces at edges", "clusters", "groups of clusters"];
+        let expected = [u64::from(triangles) * 48, edges * 32, edges * 32, clusters * 32, groups * 32];
+        assert_eq!(labels.map(|label| bytes[label]), expected, "{triangles} triangles");
+        let range: Vec<u32> =
+            values["cluster range"].chunks_exact(4).map(|w| u32::from_le_bytes(w.try_into().unwrap())).collect();
+        assert_eq!(range, [edges as u32, clusters as u32, 1, POINTS as u32]);
+        let invocations = ["find silhouettes", "bound clusters", "bound tiles", "cull edges", "count reference depth"]
+            .map(|label| match plan.passes.iter().find(|p| p.label == label).unwrap().work {
+                Work::Compute { over: Over::Items { count, .. }, .. } => u64::from(count),
+                _ => panic!("'{label}' runs over items"),
+            });
+        assert_eq!(invocations, [clusters, groups, 1, 2, POINTS as u64]);
+        check(&plan, &request.host).unwrap();
     }
 }
 

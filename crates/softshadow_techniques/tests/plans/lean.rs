@@ -1,8 +1,12 @@
 //! What nobody asked for costs no pass and no byte; and equal requests make equal plans.
 
-use softshadow_plan::{Over, Plan, Work};
+use std::collections::BTreeSet;
+
+use softshadow_plan::{Over, Plan, VertexSource, Work};
 use softshadow_scene::Camera;
-use softshadow_techniques::{HardShadowMap, RayTraced, Request, Shading, Technique};
+use softshadow_techniques::{
+    DepthComplexity, HardShadowMap, RayTraced, ReceiverSource, Request, Shading, Technique, Wants,
+};
 
 use crate::requests::{Fixture, SIZE, stage, techniques};
 
@@ -10,10 +14,17 @@ fn traced(probes: u32) -> Technique {
     Technique::RayTraced(RayTraced { probes, ..RayTraced::default() })
 }
 
+fn silhouettes(exact_area: bool) -> Technique {
+    Technique::DepthComplexity(DepthComplexity { exact_area, ..DepthComplexity::default() })
+}
+
 /// The passes that find the receivers with a triangle between them and the light: by boxes, then by triangles.
 const FOUND: &[&str] = &["no gathered 0", "gather 0", "size narrow 0", "no candidates 0", "narrow 0"];
 /// Those that trace, tell what was traced, and turn bits into values.
 const TRACED: &[&str] = &["size trace 0", "trace 0", "report 0", "resolve"];
+
+/// From edges to masks: which can be silhouettes at all, which lie before a tile, and what they add up to.
+const FOLDED: &[&str] = &["find silhouettes", "bound clusters", "bound tiles", "cull edges", "size fold", "fold edges"];
 
 fn labels(plan: &Plan) -> Vec<&str> {
     plan.passes.iter().map(|p| p.label.as_str()).collect()
@@ -65,6 +76,138 @@ fn the_plainest_hard_shadow_has_three_passes() {
     assert!(raster.colors.is_empty() && raster.depth.is_some());
     let within = technique.plan(&Request { light: &fixture.lights[1], ..request });
     assert_eq!(rasters(&within), 6, "a light within the scene looks six ways");
+}
+
+#[test]
+fn the_plainest_depth_complexity_request_folds_and_shades_nothing() {
+    let fixture = Fixture::new();
+    let request = fixture.request(1, fixture.points());
+    let plan = silhouettes(true).plan(&request);
+    let (first, last) = (["place points", "no counts", "count reference depth"], ["report counts", "resolve"]);
+    let without_clear = |plan: &Plan| -> Vec<String> {
+        labels(plan).into_iter().filter(|l| *l != "all samples decided").map(str::to_owned).collect()
+    };
+    assert_eq!(without_clear(&plan), [&first, FOLDED, &last].concat());
+    assert_eq!(outputs(&plan), ["list counts", "visibility", "receivers"]);
+    for label in ["sample radiance", "shading", "materials", "triangle materials", "color", "corners 0", "hierarchy 0"]
+    {
+        assert_eq!(plan.find(label), None, "{label}");
+    }
+    assert_eq!(rasters(&plan), 0);
+    // Silhouettes are the whole scene's: sub-scenes are no concern of theirs.
+    let two = silhouettes(true).plan(&fixture.request(2, fixture.points()));
+    assert_eq!((labels(&two), two.memory()), (labels(&plan), plan.memory()));
+    // Each of these asks for one thing more, and gets it.
+    let textured = silhouettes(true).plan(&Request { channels: 3, ..request });
+    assert!(textured.find("sample radiance").is_some());
+    for shading in [Shading::Integrated, Shading::Modulated] {
+        let mut wants = request.wants;
+        wants.picture = Some(shading);
+        assert_eq!(labels(&silhouettes(true).plan(&Request { wants, ..request })).last(), Some(&"shade"));
+    }
+}
+
+#[test]
+fn without_triangles_no_edge_is_looked_for() {
+    let fixture = Fixture::new();
+    for (scene, light, folds) in [(0, 0, false), (1, 0, true), (1, 1, true), (2, 3, true)] {
+        for receivers in [fixture.camera(), fixture.points()] {
+            for exact_area in [true, false] {
+                let plan = silhouettes(exact_area).plan(&fixture.request_for(scene, receivers, light));
+                let found: Vec<&str> = labels(&plan).into_iter().filter(|label| FOLDED.contains(label)).collect();
+                assert_eq!(found, if folds { FOLDED } else { &[] }, "{plan}");
+                for label in ["faces at edges", "clusters", "groups of clusters", "edge lists", "visible areas"] {
+                    assert_eq!(plan.find(label).is_some(), folds, "{label}");
+                }
+                // Masks open with the horizon in any scene, and results leave.
+                assert!(labels(&plan).contains(&"count reference depth"));
+                assert_eq!(&outputs(&plan)[..2], ["list counts", "visibility"]);
+            }
+        }
+    }
+}
+
+#[test]
+fn areas_answer_where_they_are_asked_and_light_is_even() {
+    let fixture = Fixture::new();
+    for (scene, exact_area, channels, kernel) in [
+        (1, true, 1, "resolve_areas"),
+        (1, false, 1, "resolve"),
+        (1, true, 3, "resolve_textured"),
+        (1, false, 3, "resolve_textured"),
+        (0, true, 1, "resolve"),
+        (0, true, 3, "resolve_textured"),
+    ] {
+        let request = Request { channels, ..fixture.request(scene, fixture.points()) };
+        let plan = silhouettes(exact_area).plan(&request);
+        let pass = plan.passes.iter().find(|p| p.label == "resolve").unwrap();
+        let Work::Compute { kernel: chosen, .. } = &pass.work else { panic!("'resolve' computes") };
+        assert_eq!(chosen.entry, kernel);
+        let binds = |name: &str| pass.bindings.iter().any(|(bound, _)| *bound == name);
+        let by_area = kernel == "resolve_areas";
+        assert_eq!((binds("areas"), binds("decided")), (by_area, !by_area), "{kernel}");
+        assert_eq!(binds("sample_radiance"), channels == 3);
+        if by_area {
+            assert_eq!(bound(&plan, "resolve", "areas"), "visible areas");
+        }
+    }
+}
+
+#[test]
+fn what_edges_pass_on_is_written_before_it_is_read() {
+    let fixture = Fixture::new();
+    let plan = silhouettes(true).plan(&fixture.request(1, fixture.camera()));
+    for (passes, name, label) in [
+        (&["bound clusters", "cull edges"][..], "clusters", "clusters"),
+        (&["bound clusters", "cull edges"], "groups_of_clusters", "groups of clusters"),
+        (&["bound tiles", "cull edges"], "parts", "tile parts"),
+        (&["cull edges", "fold edges"], "lists", "edge lists"),
+        (&["count reference depth", "cull edges", "size fold", "fold edges"], "counts", "running counts"),
+        (&["count reference depth", "bound tiles", "fold edges"], "slots", "slots"),
+        (&["count reference depth", "fold edges", "resolve"], "blocked", "blocked samples"),
+        (&["bound tiles", "fold edges", "resolve"], "areas", "visible areas"),
+    ] {
+        let places = passes.iter().map(|pass| labels(&plan).iter().position(|l| l == pass).unwrap());
+        assert!(places.is_sorted(), "{passes:?}");
+        passes.iter().for_each(|pass| assert_eq!(bound(&plan, pass, name), label, "{pass}"));
+    }
+    let work = |label: &str| &plan.passes.iter().find(|p| p.label == label).unwrap().work;
+    let Work::Compute { over: Over::Indirect(groups), .. } = work("fold edges") else {
+        panic!("'fold edges' runs over what was counted")
+    };
+    assert_eq!(plan.resources[groups.index()].label, "fold dispatch");
+    assert_eq!(bound(&plan, "size fold", "dispatch_size"), "fold dispatch");
+    let Work::Clear { target } = work("no counts") else { panic!("'no counts' clears") };
+    assert_eq!(plan.resources[target.index()].label, "running counts");
+    let Work::Copy { source, target, bytes } = work("report counts") else { panic!("it copies") };
+    let ends = [source, target].map(|id| plan.resources[id.index()].label.as_str());
+    assert_eq!((ends, *bytes), (["running counts", "list counts"], 32));
+}
+
+#[test]
+fn lights_that_the_whole_scene_is_before_share_its_occluders() {
+    let fixture = Fixture::new();
+    let plan = |light| silhouettes(true).plan(&fixture.request_for(1, fixture.points(), light));
+    // A rectangle, a sphere and a sun above the scene; the rectangle within it has its own.
+    assert_eq!((plan(0), plan(0)), (plan(2), plan(3)));
+    assert_ne!(plan(0), plan(1));
+    let faces = |light: usize| fixture.occluders[1][light].faces.key;
+    assert_eq!([2, 3, 4].map(faces), [faces(0); 3]);
+    assert_ne!(faces(0), faces(1));
+}
+
+#[test]
+fn occluders_are_for_those_who_ask() {
+    let fixture = Fixture::new();
+    for technique in techniques() {
+        for receivers in [fixture.camera(), fixture.points()] {
+            let with = fixture.request(1, receivers);
+            let without = Request { occluders: None, ..with };
+            let asks = technique.name() == "depth_complexity";
+            assert_eq!(technique.wants_occluders(), asks);
+            assert_eq!(stage(&technique, &with) != stage(&technique, &without), asks, "{}", technique.name());
+        }
+    }
 }
 
 #[test]
@@ -220,22 +363,98 @@ fn results_leave_with_the_last_pass_alone() {
         outputs(&traced(0).plan(&other_light)),
         ["trace counts 0", "visibility", "standard error", "blocked samples"]
     );
+    for exact_area in [true, false] {
+        let given = |request| outputs(&silhouettes(exact_area).plan(request)).join(", ");
+        assert_eq!(given(&last), "list counts, color, visibility, standard error, blocked samples");
+        assert_eq!(given(&middle), "list counts");
+        assert_eq!(given(&other_light), "list counts, visibility, standard error, blocked samples");
+        let mut nothing_more = last;
+        nothing_more.wants = Wants::default();
+        assert_eq!(given(&nothing_more), "list counts, visibility");
+    }
+}
+
+#[test]
+fn a_light_is_modulated_once_its_visibility_is_known() {
+    let fixture = Fixture::new();
+    let mut request = fixture.request(1, fixture.points());
+    request.wants.picture = Some(Shading::Modulated);
+    for technique in [traced(0), silhouettes(true)] {
+        for closes_light in [true, false] {
+            let plan = technique.plan(&Request { closes_light, ..request });
+            assert_eq!(labels(&plan).contains(&"shade"), closes_light, "{}", technique.name());
+        }
+    }
 }
 
 #[test]
 fn an_empty_scene_traces_and_draws_nothing() {
     let fixture = Fixture::new();
     for technique in techniques() {
+        let words: &[&str] = match technique {
+            Technique::DepthComplexity(_) => &["find", "bound", "cull", "size", "fold", "draw"],
+            _ => &["trace", "probe", "gather", "narrow", "size", "no ", "report", "choose", "draw"],
+        };
         for (scene, empty) in [(0, true), (1, false)] {
             for receivers in [fixture.camera(), fixture.points()] {
                 let plan = technique.plan(&fixture.request(scene, receivers));
-                let looks = |label: &&str| {
-                    ["trace", "probe", "gather", "narrow", "size", "no ", "report", "choose", "draw"]
-                        .iter()
-                        .any(|word| label.starts_with(word))
-                };
+                let looks = |label: &&str| words.iter().any(|word| label.starts_with(word));
                 assert_eq!(!labels(&plan).iter().any(looks), empty, "{plan}");
             }
+        }
+    }
+}
+
+/// Labels of the resources that no pass takes up and nobody gets. To clear one is no use of it.
+fn idle(plan: &Plan) -> BTreeSet<&str> {
+    let mut used: BTreeSet<usize> = plan.outputs.iter().map(|id| id.index()).collect();
+    for pass in &plan.passes {
+        used.extend(pass.bindings.iter().map(|(_, id)| id.index()));
+        match &pass.work {
+            Work::Clear { .. } => {}
+            Work::Copy { source, target, .. } => used.extend([source.index(), target.index()]),
+            Work::Compute { over: Over::Indirect(size), .. } => used.extend([size.index()]),
+            Work::Compute { .. } => {}
+            Work::Raster(raster) => {
+                if let VertexSource::Corners { buffer, .. } = raster.vertices {
+                    used.insert(buffer.index());
+                }
+                used.extend(raster.colors.iter().map(|target| target.texture.index()));
+                used.extend(raster.depth.iter().map(|target| target.texture.index()));
+            }
+        }
+    }
+    let rows = plan.resources.iter().enumerate();
+    rows.filter(|(index, _)| !used.contains(index)).map(|(_, resource)| resource.label.as_str()).collect()
+}
+
+#[test]
+fn idle_resources_are_seen() {
+    let fixture = Fixture::new();
+    let mut plan = traced(0).plan(&fixture.request(1, fixture.camera()));
+    assert_eq!(idle(&plan), BTreeSet::new());
+    let spare = plan.buffer("spare", 4);
+    plan.clear("no spare", "to no end", spare);
+    assert_eq!(idle(&plan), BTreeSet::from(["spare"]));
+    plan.passes.retain(|pass| pass.label != "resolve");
+    assert!(idle(&plan).contains("standard error"));
+}
+
+#[test]
+fn every_resource_is_for_something() {
+    let fixture = Fixture::new();
+    for technique in techniques() {
+        // Without triangles a camera has nothing to draw.
+        let requests = fixture.requests(&technique);
+        for request in requests.iter().filter(|request| !request.scene.local.sub_scenes.is_empty()) {
+            let plan = technique.plan(request);
+            // Its samples stand in the light's frame: those in space are for pictures, and areas need no number of samples.
+            let spared: &[&str] = match technique {
+                Technique::DepthComplexity(_) => &["light", "light samples", "decided samples"],
+                _ => &[],
+            };
+            let idle: Vec<&str> = idle(&plan).into_iter().filter(|label| !spared.contains(label)).collect();
+            assert_eq!(idle, Vec::<&str>::new(), "{plan}");
         }
     }
 }
@@ -244,7 +463,7 @@ fn an_empty_scene_traces_and_draws_nothing() {
 fn equal_requests_make_equal_plans() {
     let (one, other) = (Fixture::new(), Fixture::new());
     for technique in techniques() {
-        for (a, b) in one.requests().iter().zip(&other.requests()) {
+        for (a, b) in one.requests(&technique).iter().zip(&other.requests(&technique)) {
             assert_eq!(stage(&technique, a), stage(&technique, b));
         }
     }
@@ -256,30 +475,47 @@ fn what_a_parameter_can_say_leaves_the_plan_alone() {
     let request = fixture.request(1, fixture.camera());
     let bright = fixture.lights[0].clone().with_radiance([9.0; 3]).unwrap();
     let elsewhere = Camera::look_at([9.0, 0.5, 4.0], [0.0; 3], None, 30.0, SIZE).unwrap();
-    let changed = [
-        Request { light: &bright, ..request },
-        Request { receivers: softshadow_techniques::ReceiverSource::Camera(&elsewhere), ..request },
-    ];
-    let seeded = Technique::RayTraced(RayTraced { seed: 99, ..RayTraced::default() });
-    assert_eq!(seeded.plan(&request), traced(0).plan(&request));
-    assert_ne!(stage(&seeded, &request).1, stage(&traced(0), &request).1);
-    for request_changed in &changed {
-        assert_eq!(traced(0).plan(request_changed), traced(0).plan(&request));
-        assert_ne!(stage(&traced(0), request_changed).1, stage(&traced(0), &request).1);
+    let changed =
+        [Request { light: &bright, ..request }, Request { receivers: ReceiverSource::Camera(&elsewhere), ..request }];
+    let sampled = |seed| {
+        [
+            Technique::RayTraced(RayTraced { seed, ..RayTraced::default() }),
+            Technique::DepthComplexity(DepthComplexity { seed, ..DepthComplexity::default() }),
+        ]
+    };
+    for (technique, seeded) in sampled(0).into_iter().zip(sampled(99)) {
+        assert_eq!(seeded.plan(&request), technique.plan(&request));
+        assert_ne!(stage(&seeded, &request).1, stage(&technique, &request).1);
+        for request_changed in &changed {
+            assert_eq!(technique.plan(request_changed), technique.plan(&request));
+            assert_ne!(stage(&technique, request_changed).1, stage(&technique, &request).1);
+        }
+        let wider = Request { channels: 3, ..request };
+        assert_ne!(technique.plan(&wider), technique.plan(&request), "what changes buffers changes the plan");
     }
-    let wider = Request { channels: 3, ..request };
-    assert_ne!(traced(0).plan(&wider), traced(0).plan(&request), "what changes buffers changes the plan");
+    assert_ne!(silhouettes(true).plan(&request), silhouettes(false).plan(&request));
 }
 
 #[test]
 fn passes_of_one_light_differ_in_their_values_alone() {
     let fixture = Fixture::new();
-    let technique = Technique::RayTraced(RayTraced { passes: 3, ..RayTraced::default() });
     let request = fixture.request(1, fixture.points());
-    let values = |pass| technique.values(&request, &fixture.lights[0], pass).unwrap();
-    let changed = |a: u32, b: u32| -> Vec<String> {
-        values(a).into_iter().filter(|(label, value)| values(b)[label] != *value).map(|(label, _)| label).collect()
-    };
-    assert_eq!(changed(0, 1), ["light", "light samples", "sampling"], "the box around the samples moves with them");
-    assert!(changed(1, 1).is_empty());
+    // The box around the samples moves with them.
+    for (technique, different) in [
+        (
+            Technique::RayTraced(RayTraced { passes: 3, ..RayTraced::default() }),
+            &["light", "light samples", "sampling"][..],
+        ),
+        (
+            Technique::DepthComplexity(DepthComplexity { passes: 3, ..DepthComplexity::default() }),
+            &["frame samples", "light", "light samples", "sampling"],
+        ),
+    ] {
+        let values = |pass| technique.values(&request, &fixture.lights[0], pass).unwrap();
+        let changed = |a: u32, b: u32| -> Vec<String> {
+            values(a).into_iter().filter(|(label, value)| values(b)[label] != *value).map(|(label, _)| label).collect()
+        };
+        assert_eq!(changed(0, 1), different);
+        assert!(changed(1, 1).is_empty());
+    }
 }

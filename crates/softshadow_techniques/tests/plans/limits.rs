@@ -26,7 +26,7 @@ fn refused(storage_buffers: u32) -> BTreeSet<&'static str> {
     let (fixture, mut names) = (Fixture::new(), BTreeSet::new());
     for technique in techniques() {
         technique.check().unwrap();
-        let requests = fixture.requests();
+        let requests = fixture.requests(&technique);
         assert!(requests.len() >= 200, "the grid is a grid");
         for plan in requests.iter().map(|request| technique.plan(request)) {
             match check(&plan, &host) {
@@ -44,15 +44,15 @@ fn refused(storage_buffers: u32) -> BTreeSet<&'static str> {
 #[test]
 fn plans_run_on_core_webgpu_and_need_all_of_its_storage_buffers() {
     assert_eq!(refused(CORE.storage_buffers), BTreeSet::new());
-    assert_eq!(refused(CORE.storage_buffers - 1), BTreeSet::from(["ray_traced"]));
-    assert_eq!(refused(2), BTreeSet::from(["hard_shadow_map", "ray_traced"]));
+    assert_eq!(refused(CORE.storage_buffers - 1), BTreeSet::from(["depth_complexity", "ray_traced"]));
+    assert_eq!(refused(2), BTreeSet::from(["depth_complexity", "hard_shadow_map", "ray_traced"]));
 }
 
 /// The most storage buffers that a pass of any plan of the grid binds, by the labels of the passes that bind so many.
 fn most_bound() -> (usize, BTreeSet<String>) {
     let (fixture, mut most, mut labels) = (Fixture::new(), 0, BTreeSet::new());
     for technique in techniques() {
-        for plan in fixture.requests().iter().map(|request| technique.plan(request)) {
+        for plan in fixture.requests(&technique).iter().map(|request| technique.plan(request)) {
             for pass in &plan.passes {
                 let Work::Compute { kernel, .. } = &pass.work else { continue };
                 let entry = &softshadow_shaders::module(kernel.file).unwrap().entry_points[kernel.entry];
@@ -71,15 +71,17 @@ fn most_bound() -> (usize, BTreeSet<String>) {
 
 #[test]
 fn the_fullest_pass_fills_core_webgpu() {
-    // The bits of every sample, its light and its material: nothing more fits a kernel that makes a picture.
-    assert_eq!(most_bound(), (8, BTreeSet::from(["shade".to_owned()])));
+    // The bits of every sample, its light and its material: nothing more fits a kernel that makes a picture. Depths are counted over
+    // faces, their edges and their tree; folds have edges, their faces and lists, and write bits and areas.
+    let fullest = ["shade", "count reference depth", "fold edges"].map(str::to_owned);
+    assert_eq!(most_bound(), (8, BTreeSet::from(fullest)));
 }
 
 #[test]
 fn every_parameter_has_a_value_of_its_size() {
     let fixture = Fixture::new();
     for technique in techniques() {
-        for request in fixture.requests() {
+        for request in fixture.requests(&technique) {
             let (plan, values) = stage(&technique, &request);
             for parameter in plan.resources.iter().filter(|r| r.origin == Origin::Parameter) {
                 let given = values.get(&parameter.label).map(|v| v.len() as u64);

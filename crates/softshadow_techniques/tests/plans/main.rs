@@ -2,6 +2,7 @@
 //! and hold nothing that nobody asked for.
 
 mod bytes;
+mod depth_complexity;
 mod lean;
 mod limits;
 mod program;

@@ -3,7 +3,8 @@
 use softshadow_plan::{Host, Program, Step, check};
 use softshadow_scene::{MAX_SAMPLES, Points, SceneError};
 use softshadow_techniques::{
-    RayTraced, ReceiverSource, Shading, StageTask, Technique, TechniqueError, VisibilityProgram, Wants, blocks,
+    DepthComplexity, RayTraced, ReceiverSource, Shading, StageTask, Technique, TechniqueError, VisibilityProgram,
+    Wants, blocks,
 };
 
 use crate::requests::Fixture;
@@ -13,6 +14,7 @@ fn program<'a>(fixture: &'a Fixture, technique: &'a Technique) -> VisibilityProg
         technique,
         scene: &fixture.scenes[1],
         lights: &fixture.lights[..2],
+        occluders: if technique.wants_occluders() { &fixture.occluders[1][..2] } else { &[] },
         receivers: fixture.camera(),
         // Four rows of eight pixels, two at a time.
         blocks: blocks(32, 8, 0, 16),
@@ -22,43 +24,69 @@ fn program<'a>(fixture: &'a Fixture, technique: &'a Technique) -> VisibilityProg
     }
 }
 
-fn passes(passes: u32) -> Technique {
-    Technique::RayTraced(RayTraced { passes, samples: 4, ..RayTraced::default() })
+/// The techniques that take passes.
+fn passes(passes: u32) -> [Technique; 2] {
+    [
+        Technique::RayTraced(RayTraced { passes, samples: 4, ..RayTraced::default() }),
+        Technique::DepthComplexity(DepthComplexity { passes, samples: 4, ..DepthComplexity::default() }),
+    ]
 }
 
 #[test]
 fn every_block_light_and_pass_has_its_stage() {
-    let (fixture, technique) = (Fixture::new(), passes(3));
-    let program = program(&fixture, &technique);
-    program.check().unwrap();
-    assert_eq!(program.stages(), 2 * 2 * 3);
-    let tasks: Vec<StageTask> = (0..).map_while(|index| program.task(index)).collect();
-    let mut expected = Vec::new();
-    for block in 0..2 {
-        for light in 0..2 {
-            expected.extend((0..3).map(|pass| StageTask { block, light, pass }));
+    let fixture = Fixture::new();
+    for technique in passes(3) {
+        let program = program(&fixture, &technique);
+        program.check().unwrap();
+        assert_eq!(program.stages(), 2 * 2 * 3);
+        let tasks: Vec<StageTask> = (0..).map_while(|index| program.task(index)).collect();
+        let mut expected = Vec::new();
+        for block in 0..2 {
+            for light in 0..2 {
+                expected.extend((0..3).map(|pass| StageTask { block, light, pass }));
+            }
         }
+        assert_eq!(tasks, expected);
     }
-    assert_eq!(tasks, expected);
 }
 
 #[test]
 fn stages_open_and_close_their_blocks() {
-    let (fixture, technique) = (Fixture::new(), passes(2));
-    let program = program(&fixture, &technique);
-    let mut rows = Vec::new();
-    let mut index = 0;
-    while let Step::Run(stage) = program.step(index, &[]) {
-        check(&stage.plan, &program.host).unwrap();
-        let has = |label: &str| stage.plan.passes.iter().any(|p| p.label == label);
-        let leaves = |label: &str| stage.plan.outputs.iter().any(|id| stage.plan.resources[id.index()].label == label);
-        rows.push([has("draw triangle ids 0"), has("place receivers 0"), leaves("visibility"), leaves("color")]);
-        index += 1;
+    let fixture = Fixture::new();
+    for technique in passes(2) {
+        let program = program(&fixture, &technique);
+        let mut rows = Vec::new();
+        let mut index = 0;
+        while let Step::Run(stage) = program.step(index, &[]) {
+            check(&stage.plan, &program.host).unwrap();
+            let has = |label: &str| stage.plan.passes.iter().any(|p| p.label == label);
+            let leaves =
+                |label: &str| stage.plan.outputs.iter().any(|id| stage.plan.resources[id.index()].label == label);
+            rows.push([has("draw triangle ids 0"), has("place receivers 0"), leaves("visibility"), leaves("color")]);
+            index += 1;
+        }
+        // Pixels are drawn once, receivers placed once a block; values leave with a light's last pass, the picture with a block's.
+        let block =
+            |draws| [[draws, true, false, false], [false, false, true, false], [false; 4], [false, false, true, true]];
+        assert_eq!(rows, [block(true), block(false)].concat(), "{}", technique.name());
     }
-    // Pixels are drawn once, receivers placed once a block; values leave with a light's last pass, the picture with a block's.
-    let block =
-        |draws| [[draws, true, false, false], [false, false, true, false], [false; 4], [false, false, true, true]];
-    assert_eq!(rows, [block(true), block(false)].concat());
+}
+
+#[test]
+fn every_stage_has_what_hides_its_light() {
+    let fixture = Fixture::new();
+    let technique = Technique::DepthComplexity(DepthComplexity::default());
+    let program = program(&fixture, &technique);
+    // Both sheets lie below the first light, and one below the second, which is between them.
+    let mut edges = Vec::new();
+    for index in 0..program.stages() {
+        let Step::Run(stage) = program.step(index, &[]) else { panic!("stage {index} runs") };
+        let uploaded: Vec<_> = stage.plan.content_keys().collect();
+        let own = &fixture.occluders[1][program.task(index).unwrap().light];
+        assert!(own.contents().all(|content| uploaded.contains(&content.key)));
+        edges.extend(stage.plan.memory().into_iter().filter(|(label, _)| *label == "edges").map(|(_, n)| n / 32));
+    }
+    assert_eq!(edges, [10, 5, 10, 5]);
 }
 
 #[test]
@@ -78,6 +106,20 @@ fn a_program_that_cannot_run_says_so_before_it_starts() {
         assert_eq!(program(&fixture, &technique).check().unwrap_err().to_string(), words);
     }
     let most = Technique::RayTraced(RayTraced { samples: MAX_SAMPLES, ..RayTraced::default() });
+    assert_eq!(program(&fixture, &most).check(), Ok(()));
+    let samples = "depth_complexity samples: must lie between 1 and 256, got ";
+    for (settings, words) in [
+        (DepthComplexity { samples: 0, ..DepthComplexity::default() }, format!("{samples}0; more come as passes")),
+        (DepthComplexity { samples: 257, ..DepthComplexity::default() }, format!("{samples}257; more come as passes")),
+        (
+            DepthComplexity { passes: 0, ..DepthComplexity::default() },
+            "depth_complexity passes: must be at least 1".into(),
+        ),
+    ] {
+        let technique = Technique::DepthComplexity(settings);
+        assert_eq!(program(&fixture, &technique).check().unwrap_err().to_string(), words);
+    }
+    let most = Technique::DepthComplexity(DepthComplexity { samples: 256, ..DepthComplexity::default() });
     assert_eq!(program(&fixture, &most).check(), Ok(()));
     for resolution in [15, 16_385] {
         let technique = Technique::HardShadowMap(softshadow_techniques::HardShadowMap { resolution });

@@ -1,11 +1,15 @@
 //! The grid: scenes, lights, receivers, techniques, and what is wanted.
 
+use std::sync::Arc;
+
 use softshadow_plan::{Host, Plan, Values};
 use softshadow_scene::{
     Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, SamplePattern, Scene, look_at,
 };
+use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
-    Block, HardShadowMap, RayTraced, ReceiverSource, Request, SceneContents, Shading, Technique, Wants,
+    Block, DepthComplexity, HardShadowMap, OccluderContents, RayTraced, ReceiverSource, Request, SceneContents,
+    Shading, Technique, Wants,
 };
 
 /// Width and height of the grid's images.
@@ -19,8 +23,11 @@ pub(crate) struct Fixture {
     pub(crate) scenes: [SceneContents; 3],
     pub(crate) camera: Camera,
     pub(crate) points: Points,
-    /// A rectangle above the scene, a rectangle within it, a sphere, a sun, and a rectangle with a texture.
+    /// A rectangle above the scene, a rectangle within it, a sphere, a sun, a rectangle with a texture, and a sphere that
+    /// triangles touch.
     pub(crate) lights: Vec<Light>,
+    /// What hides each light, by scene. The last light has nothing where there are triangles: those that touch it have no silhouette.
+    pub(crate) occluders: [Vec<Arc<OccluderContents>>; 3],
 }
 
 impl Fixture {
@@ -43,13 +50,20 @@ impl Fixture {
             light(LightShape::Sphere { radius: 0.5 }, [0.0, 0.0, 5.0]),
             light(LightShape::Sun { angular_diameter: 0.01 }, [0.0, 0.0, 5.0]),
             light(rectangle, [0.0, 0.0, 5.0]).with_texture(texture).unwrap(),
+            light(LightShape::Sphere { radius: 0.3 }, [0.0, 0.0, 0.5]),
         ];
+        let occluders = scenes.each_ref().map(|scene| {
+            let of = |light| OccluderContents::new(&scene.local, boundary_of(&scene.local, light)).ok().map(Arc::new);
+            lights.iter().map_while(of).collect::<Vec<_>>()
+        });
+        assert_eq!(occluders.each_ref().map(Vec::len), [6, 5, 5], "no other light is refused");
         let positions = (0..POINTS).map(|n| [0.1 * n as f64, 0.0, 0.1]).collect();
         Self {
             scenes,
             camera: Camera::look_at([3.0, 0.5, 4.0], [0.0; 3], None, 45.0, SIZE).unwrap(),
             points: Points::new(positions, Some(vec![[0.0, 0.0, 1.0]; POINTS])).unwrap(),
             lights,
+            occluders,
         }
     }
 
@@ -61,13 +75,19 @@ impl Fixture {
         ReceiverSource::Points(&self.points)
     }
 
-    /// A request for everything at once in one block; the tests change what they are about.
+    /// A request for everything at once in one block, for the first light; the tests change what they are about.
     pub(crate) fn request<'a>(&'a self, scene: usize, receivers: ReceiverSource<'a>) -> Request<'a> {
+        self.request_for(scene, receivers, 0)
+    }
+
+    /// The same for another light, with what hides it.
+    pub(crate) fn request_for<'a>(&'a self, scene: usize, receivers: ReceiverSource<'a>, light: usize) -> Request<'a> {
         Request {
             scene: &self.scenes[scene],
             receivers,
             block: Block { first: 0, count: receivers.count(), skip: 0, keep: receivers.count() },
-            light: &self.lights[0],
+            light: &self.lights[light],
+            occluders: self.occluders[scene].get(light).map(Arc::as_ref),
             channels: 1,
             opens_block: true,
             first_light: true,
@@ -79,15 +99,17 @@ impl Fixture {
         }
     }
 
-    /// The whole grid.
-    pub(crate) fn requests(&self) -> Vec<Request<'_>> {
+    /// The whole grid, as the front door asks a technique: with occluders for who works on them, and without lights that have none.
+    pub(crate) fn requests(&self, technique: &Technique) -> Vec<Request<'_>> {
+        let asks = technique.wants_occluders();
         let mut grid = Vec::new();
         let wants = |picture, all| Wants { standard_error: all, sample_masks: all, picture };
         // First of all stages, first of a block, a middle one, the last.
         let places = [[true, true, true, true], [false, true, false, false], [false; 4], [false, false, true, true]];
         for scene in 0..self.scenes.len() {
             for receivers in [self.camera(), self.points()] {
-                for (index, light) in self.lights.iter().enumerate() {
+                let has_all = |index: &usize| !asks || *index < self.occluders[scene].len();
+                for index in (0..self.lights.len()).filter(has_all) {
                     // A picture shows a material, and without triangles there is none: the front door asks for no such plan.
                     let pictures = [None, Some(Shading::Integrated), Some(Shading::Modulated)];
                     let shown = if scene == 0 { 1 } else { pictures.len() };
@@ -95,9 +117,9 @@ impl Fixture {
                         for [opens_run, opens_block, closes_light, closes_block] in places {
                             let channels = if index == 4 { 3 } else { 1 };
                             let wants = wants(picture, index % 2 == 0);
-                            let base = self.request(scene, receivers);
+                            let base = self.request_for(scene, receivers, index);
                             grid.push(Request {
-                                light,
+                                occluders: base.occluders.filter(|_| asks),
                                 channels,
                                 opens_run,
                                 opens_block,
@@ -122,6 +144,16 @@ pub(crate) fn techniques() -> Vec<Technique> {
     };
     let mut all = Technique::defaults();
     all.extend([traced(1, 0, 1), traced(33, 8, 3), traced(64, 63, 1), traced(1000, 0, 2)]);
+    let silhouettes = |samples, exact_area, passes| {
+        let pattern = if samples % 2 == 0 { SamplePattern::Stratified } else { SamplePattern::LowDiscrepancy };
+        Technique::DepthComplexity(DepthComplexity { samples, exact_area, passes, pattern, seed: 7 })
+    };
+    all.extend([
+        silhouettes(1, true, 2),
+        silhouettes(16, false, 1),
+        silhouettes(33, false, 3),
+        silhouettes(256, true, 1),
+    ]);
     all.extend([16, 300].map(|resolution| Technique::HardShadowMap(HardShadowMap { resolution })));
     all
 }

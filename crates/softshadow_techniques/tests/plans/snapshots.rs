@@ -1,6 +1,6 @@
 //! A handful of plans as text: what a change to a technique changes stands in the diff.
 
-use softshadow_techniques::{HardShadowMap, RayTraced, Request, Shading, Technique};
+use softshadow_techniques::{DepthComplexity, HardShadowMap, RayTraced, Request, Shading, Technique};
 
 use crate::requests::Fixture;
 
@@ -17,7 +17,7 @@ fn ray_traced_points() {
 #[test]
 fn ray_traced_everything() {
     let fixture = Fixture::new();
-    let mut request = Request { light: &fixture.lights[4], channels: 3, ..fixture.request(2, fixture.camera()) };
+    let mut request = Request { channels: 3, ..fixture.request_for(2, fixture.camera(), 4) };
     request.wants.picture = Some(Shading::Integrated);
     request.wants.standard_error = true;
     request.wants.sample_masks = true;
@@ -34,10 +34,44 @@ fn ray_traced_second_light() {
 #[test]
 fn hard_shadow_map_within_the_scene() {
     let fixture = Fixture::new();
-    let mut request = Request { light: &fixture.lights[1], ..fixture.request(1, fixture.points()) };
+    let mut request = fixture.request_for(1, fixture.points(), 1);
     request.wants.picture = Some(Shading::Modulated);
     let technique = Technique::HardShadowMap(HardShadowMap { resolution: 512 });
     insta::assert_snapshot!(technique.plan(&request));
+}
+
+fn silhouettes(samples: u32) -> Technique {
+    Technique::DepthComplexity(DepthComplexity { samples, ..DepthComplexity::default() })
+}
+
+#[test]
+fn depth_complexity_points() {
+    let fixture = Fixture::new();
+    insta::assert_snapshot!(silhouettes(64).plan(&fixture.request(1, fixture.points())));
+}
+
+#[test]
+fn depth_complexity_everything() {
+    let fixture = Fixture::new();
+    let mut request = Request { channels: 3, ..fixture.request_for(2, fixture.camera(), 4) };
+    request.wants.picture = Some(Shading::Integrated);
+    request.wants.standard_error = true;
+    request.wants.sample_masks = true;
+    insta::assert_snapshot!(silhouettes(256).plan(&request));
+}
+
+#[test]
+fn depth_complexity_second_light_within_the_scene() {
+    let fixture = Fixture::new();
+    let mut request = fixture.request_for(1, fixture.camera(), 1);
+    request.wants.picture = Some(Shading::Modulated);
+    insta::assert_snapshot!(silhouettes(16).plan(&Request { opens_block: false, opens_run: false, ..request }));
+}
+
+#[test]
+fn depth_complexity_empty_scene() {
+    let fixture = Fixture::new();
+    insta::assert_snapshot!(silhouettes(64).plan(&fixture.request(0, fixture.points())));
 }
 
 #[test]

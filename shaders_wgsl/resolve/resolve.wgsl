@@ -11,10 +11,21 @@
 @group(0) @binding(4) var<storage, read_write> visibility: array<f32>;
 @group(0) @binding(5) var<storage, read_write> standard_error: array<f32>;
 @group(0) @binding(6) var<storage, read> sample_radiance: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read> areas: array<f32>;
 
 // Welford's update of mean and standard error with the value of one more pass. The standard error's slot holds the sum of
 // squared deviations until the last pass.
 fn accumulate(slot: u32, value: f32, known: u32) {
+    accumulate_with_error(slot, value, binomial_error(value, known));
+}
+
+fn binomial_error(value: f32, known: u32) -> f32 {
+    // One sample says nothing about its own error, which is at most a half.
+    return select(sqrt(max(value * (1.0 - value), 0.0) / f32(max(known, 2u) - 1u)), 0.5, known < 2u);
+}
+
+// `single` is the error of one pass alone.
+fn accumulate_with_error(slot: u32, value: f32, single: f32) {
     var mean = value;
     var deviations = 0.0;
     if (sampling.pass_index > 0u) {
@@ -28,9 +39,7 @@ fn accumulate(slot: u32, value: f32, known: u32) {
     } else if (sampling.passes > 1u) {
         standard_error[slot] = sqrt(max(deviations, 0.0) / f32(sampling.passes - 1u) / f32(sampling.passes));
     } else {
-        // One sample says nothing about its own error, which is at most a half.
-        let binomial = sqrt(max(mean * (1.0 - mean), 0.0) / f32(max(known, 2u) - 1u));
-        standard_error[slot] = select(binomial, 0.5, known < 2u);
+        standard_error[slot] = single;
     }
 }
 
@@ -56,6 +65,26 @@ fn resolve(@builtin(global_invocation_id) invocation: vec3<u32>) {
         hidden += countOneBits(mask_word(index, word, known));
     }
     accumulate(index, 1.0 - f32(hidden) / f32(known), known);
+}
+
+// Where the visible area of the light is known it answers, without noise; elsewhere it is negative, and samples answer.
+@compute @workgroup_size(64)
+fn resolve_areas(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x >= slice.count) {
+        return;
+    }
+    let index = slice.first + invocation.x;
+    var hidden = 0u;
+    for (var word = 0u; 32u * word < sampling.count; word++) {
+        hidden += countOneBits(mask_word(index, word, sampling.count));
+    }
+    let sampled = 1.0 - f32(hidden) / f32(sampling.count);
+    let by_area = areas[index] >= 0.0;
+    accumulate_with_error(
+        index,
+        select(sampled, areas[index], by_area),
+        select(binomial_error(sampled, sampling.count), 0.0, by_area),
+    );
 }
 
 // Textured light: V = Σ L·visible / Σ L by channel; a channel without light returns the share of area.

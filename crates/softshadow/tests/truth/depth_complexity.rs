@@ -1,0 +1,161 @@
+//! Silhouette edges on the device against shadow rays on the device: the same samples, the same bits; and areas against closed forms.
+
+use softshadow::{
+    Camera, DepthComplexity, Error, Light, LightShape, LightTexture, Options, Receivers, Scene, Technique, Visibility,
+    look_at, measure, procedural, visibility,
+};
+
+use crate::common::{Random, context, lamp, points, ray_traced, rectangle, see, shipped, surface_points};
+use crate::shapes::{plate, scene, sphere, torus};
+
+fn folded(samples: u32) -> DepthComplexity {
+    DepthComplexity { samples, exact_area: false, ..DepthComplexity::default() }
+}
+
+/// Samples in which edges and rays differ, and samples that are hidden.
+fn against_rays(scene: &Scene, lights: &[Light], receivers: &Receivers, samples: u32) -> (Visibility, u32, u32) {
+    let rays = see(scene, lights, receivers, &ray_traced(samples));
+    let edges = see(scene, lights, receivers, &Technique::DepthComplexity(folded(samples)));
+    let (a, b) = (&rays.masks.as_ref().unwrap().bits, &edges.masks.as_ref().unwrap().bits);
+    // Bits past the last sample mean nothing.
+    let used = |at: usize| {
+        let left = samples - 32 * (at as u32 % samples.div_ceil(32));
+        if left >= 32 { !0 } else { !(!0u32 << left) }
+    };
+    let differ = a.iter().zip(b).enumerate().map(|(at, (x, y))| ((x ^ y) & used(at)).count_ones()).sum();
+    let hidden = a.iter().enumerate().map(|(at, x)| (x & used(at)).count_ones()).sum();
+    (edges, differ, hidden)
+}
+
+#[test]
+fn shipped_scenes_have_the_bits_of_rays() {
+    for name in ["fork", "cards", "toruses", "hall"] {
+        let (scene, light, camera) = shipped(name, [160, 120]);
+        let (edges, differ, hidden) = against_rays(&scene, &[light], &Receivers::Camera(camera), 64);
+        println!(
+            "{name}: {differ} of {} samples differ, {} edges in lists",
+            160 * 120 * 64,
+            edges.info.silhouette_edges
+        );
+        assert!(hidden > 100_000 && edges.info.silhouette_edges > 500, "{name}: {hidden}");
+        assert!(differ <= 12, "{name}: {differ} samples differ, more than one in 10^5");
+    }
+}
+
+/// A ring and a ball over each other, and every kind of light over them.
+fn bodies() -> Scene {
+    scene(&[torus(0.5, 0.2, 24, 12), sphere([0.1, 0.0, 0.6], 0.25, 2)].concat())
+}
+
+fn lights() -> Vec<Light> {
+    let pose = look_at([0.5, 0.4, 3.0], [0.0; 3], None).unwrap();
+    let bracket = [[-0.5, -0.5], [0.6, -0.5], [0.6, -0.15], [-0.1, -0.15], [-0.1, 0.45], [-0.5, 0.45]];
+    [
+        rectangle(1.0, 0.6),
+        LightShape::Disc { radius: 0.5 },
+        LightShape::Polygon { outline: bracket.to_vec() },
+        LightShape::Sphere { radius: 0.5 },
+        LightShape::Sun { angular_diameter: 0.3 },
+        rectangle(0.0, 0.0),
+    ]
+    .map(|shape| Light::new(shape, pose).unwrap())
+    .to_vec()
+}
+
+#[test]
+fn every_light_and_count_of_samples_has_the_bits_of_rays() {
+    let scene = bodies();
+    let floor = Random(6).points(3000, [-1.5, 1.5], [-1.5, 1.5], [-1.0, -0.4]);
+    let (free, surface) = (points(floor.clone()), surface_points(floor, [0.0, 0.3, 0.9]));
+    for light in lights() {
+        for samples in [1, 16, 40, 64, 128, 256] {
+            for receivers in [&free, &surface] {
+                let (_, differ, hidden) = against_rays(&scene, std::slice::from_ref(&light), receivers, samples);
+                assert!(hidden > 200 * samples, "{:?}: {hidden}", light.shape());
+                assert!(differ <= samples / 64 + 1, "{:?}, {samples} samples: {differ} differ", light.shape());
+            }
+        }
+    }
+}
+
+#[test]
+fn lights_within_the_scene_cut_it() {
+    let scene = scene(&[torus(0.6, 0.3, 24, 12), sphere([0.0, 0.0, 0.1], 0.3, 2)].concat());
+    let light = lamp(rectangle(1.0, 1.0), [0.05, 0.03, 0.12]);
+    let under = points(Random(7).points(4000, [-1.0, 1.0], [-1.0, 1.0], [-0.8, -0.1]));
+    let (edges, differ, hidden) = against_rays(&scene, &[light], &under, 64);
+    assert!(edges.info.cut_triangles > 50 && hidden > 100_000);
+    assert_eq!(differ, 0);
+}
+
+#[test]
+fn areas_answer_without_noise() {
+    // One plate: its shadow on the light is a rectangle, and no sample sees two layers.
+    let occluder = plate([-0.3, 0.4], [-0.2, 0.25], 0.7);
+    let (shade, light) = (scene(&occluder), lamp(rectangle(1.0, 0.8), [0.15, -0.1, 2.0]));
+    let floor = Random(8).points(4000, [-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]);
+    let seen = see(&shade, &[light], &points(floor.clone()), &Technique::DepthComplexity(DepthComplexity::default()));
+    let exact =
+        measure::RectangleLight::new([0.15, -0.1, 2.0], [0.5, 0.0, 0.0], [0.0, 0.4, 0.0], [0.0, 0.0, -1.0]).unwrap();
+    let mut partly = 0;
+    for (p, value) in floor.iter().zip(&seen.values) {
+        let truth = measure::rectangle_visibility(&exact, &occluder, &measure::Receiver::at(*p)).unwrap();
+        assert!((f64::from(*value) - truth).abs() < 1e-5, "{p:?}: {value} {truth}");
+        partly += usize::from(truth > 0.0 && truth < 1.0);
+    }
+    assert!(partly > 500 && seen.info.area_receivers > partly as u64 / 2, "{partly} {:?}", seen.info.area_receivers);
+    // Samples alone are far off.
+    let light = lamp(rectangle(1.0, 0.8), [0.15, -0.1, 2.0]);
+    let sampled = see(&shade, &[light], &points(floor), &Technique::DepthComplexity(folded(64)));
+    let worst = sampled.values.iter().zip(&seen.values).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(worst > 0.03 && sampled.info.area_receivers == 0, "{worst}");
+}
+
+#[test]
+fn textured_lights_and_progressive_passes_average_samples() {
+    let (scene, texture) = (bodies(), LightTexture::new(2, 1, vec![[1.0, 0.0, 0.2], [0.0, 1.0, 0.2]]).unwrap());
+    let light = lights()[0].clone().with_texture(texture).unwrap();
+    let floor = points(Random(9).points(2000, [-1.5, 1.5], [-1.5, 1.5], [-1.0, -0.4]));
+    let both = [lights()[1].clone(), light];
+    let rays = see(&scene, &both, &floor, &ray_traced(64));
+    let edges = see(&scene, &both, &floor, &Technique::DepthComplexity(DepthComplexity::default()));
+    assert_eq!((edges.channels, edges.info.area_receivers), (3, 0));
+    assert_eq!(rays.values, edges.values);
+    let passes = |technique| see(&scene, &lights()[..1], &floor, &technique);
+    let four = passes(Technique::DepthComplexity(DepthComplexity { passes: 4, ..folded(64) }));
+    let rays = passes(Technique::RayTraced(softshadow::RayTraced { passes: 4, ..Default::default() }));
+    assert_eq!((four.values, four.standard_error), (rays.values, rays.standard_error));
+}
+
+#[test]
+fn foliage_and_triangles_in_a_lamp_are_refused_with_the_way_out() {
+    let run = |scene: &Scene, light: &Light, receivers: &Receivers| {
+        let technique = Technique::DepthComplexity(DepthComplexity::default());
+        visibility(
+            context(),
+            scene,
+            std::slice::from_ref(light),
+            receivers,
+            &technique,
+            &Options::default(),
+            &mut |_, _| true,
+        )
+    };
+    let described = procedural::shipped("canopy").unwrap();
+    let canopy = described.build().unwrap();
+    let light = Light::new(rectangle(2.0, 2.0), look_at([0.0, 5.0, 0.0], [0.0; 3], None).unwrap()).unwrap();
+    let camera = Camera::look_at([2.6, 2.4, 3.6], [0.0, 0.85, 0.0], None, 40.0, [64, 64]).unwrap();
+    let refused = run(&canopy, &light, &Receivers::Camera(camera)).unwrap_err();
+    assert!(matches!(&refused, Error::Gpu(words) if words.contains("use ray_traced")), "{refused}");
+    let lamp = lamp(LightShape::Sphere { radius: 0.4 }, [0.0, 0.0, 0.6]);
+    let refused = run(&bodies(), &lamp, &points(vec![[0.0, 0.0, -1.0]])).unwrap_err().to_string();
+    assert!(refused.contains("triangles touch it") && refused.contains("ray_traced"), "{refused}");
+}
+
+#[test]
+fn an_empty_scene_is_lit() {
+    let empty = Scene::new(Vec::new()).unwrap();
+    let up = surface_points(vec![[0.0, 0.0, 0.0], [0.3, 0.1, 0.0]], [0.0, 0.0, 1.0]);
+    let seen = see(&empty, &lights(), &up, &Technique::DepthComplexity(DepthComplexity::default()));
+    assert!(seen.values.iter().all(|v| *v == 1.0), "{:?}", seen.values);
+}

@@ -1,0 +1,140 @@
+//! What hides one light, as the kernels read it: faces, edges, and a hierarchy over the faces.
+
+use softshadow_plan::Content;
+use softshadow_scene::occluders::{LightBoundary, NO_SIDE, Occluders};
+use softshadow_scene::{BvhNode, Light, LightFrame, LocalScene, SceneError};
+
+/// `Face` of `occluders.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct FaceRecord {
+    normal: [f32; 3],
+    triangle: u32,
+    point: [f32; 3],
+    flatness: f32,
+    sides: [u32; 4],
+}
+
+/// `OccluderEdge` of `occluders.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct EdgeRecord {
+    low: [f32; 3],
+    first_incidence: u32,
+    high: [f32; 3],
+    incidence_count: u32,
+}
+
+/// `IncidentFace` of `occluders.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct IncidentFace {
+    normal: [f32; 3],
+    reference: u32,
+    point: [f32; 3],
+    flatness: f32,
+}
+
+/// Everything that can hide one light, and the bytes that go to the device.
+#[derive(Debug, Clone)]
+pub struct OccluderContents {
+    /// The light's boundary that it was cut with; lights with the same share it.
+    pub boundary: LightBoundary,
+    /// Faces.
+    pub faces: Content,
+    /// Their hierarchy.
+    pub face_tree: Content,
+    /// Edges.
+    pub edges: Content,
+    /// Faces at the edges, each edge's together.
+    pub incident_faces: Content,
+    /// How many edges there are.
+    pub edge_count: u32,
+    /// Triangles that the light's plane cut.
+    pub cut_triangles: usize,
+    /// Triangles behind the light.
+    pub triangles_behind: usize,
+}
+
+/// Where a light makes geometry stop; nowhere when all of it is in front, so that lights share what is made of a scene.
+#[must_use]
+pub fn boundary_of(local: &LocalScene, light: &Light) -> LightBoundary {
+    let boundary = LightFrame::new(light, &local.frame).boundary;
+    let corners = || local.triangles().flatten().map(|v| glam::DVec3::from(v.map(f64::from)));
+    let is_in_front = match boundary {
+        LightBoundary::None => true,
+        LightBoundary::Plane { point, normal } => {
+            corners().all(|v| glam::DVec3::from(normal).dot(v - glam::DVec3::from(point)) > 0.0)
+        }
+        // A triangle can touch a ball between its corners: only far away it cannot.
+        LightBoundary::Ball { center, radius } => {
+            let far = radius * (1.0 + 1e-6) + 2.0 * f64::from(local.extent) * 3f64.sqrt();
+            corners().all(|v| v.distance(glam::DVec3::from(center)) > far)
+        }
+    };
+    if is_in_front { LightBoundary::None } else { boundary }
+}
+
+impl OccluderContents {
+    /// Cuts a scene at a light's boundary and lays it out.
+    ///
+    /// # Errors
+    /// [`SceneError::TooLarge`] for too many triangles, and [`SceneError::Invalid`] where triangles touch a ball of light: there no edge
+    /// says where a shadow ends.
+    pub fn new(local: &LocalScene, boundary: LightBoundary) -> Result<Self, SceneError> {
+        let triangles: Vec<[[f32; 3]; 3]> = local.triangles().collect();
+        let occluders = Occluders::new(&triangles, |_| 1.0, &boundary)?;
+        if !occluders.touching.is_empty() {
+            let count = occluders.touching.len();
+            let reason = format!("{count} triangles touch it; move them apart, or use ray_traced");
+            return Err(SceneError::Invalid { what: "sphere light".into(), reason });
+        }
+        Ok(Self::lay_out(&occluders, boundary))
+    }
+
+    fn lay_out(occluders: &Occluders, boundary: LightBoundary) -> Self {
+        let face = |f: &softshadow_scene::occluders::Face| FaceRecord {
+            normal: f.normal,
+            triangle: f.triangle,
+            point: f.point,
+            flatness: f.flatness,
+            sides: f.sides,
+        };
+        let edge = |e: &softshadow_scene::occluders::OccluderEdge| EdgeRecord {
+            low: e.low,
+            first_incidence: e.first_incidence,
+            high: e.high,
+            incidence_count: e.incidence_count,
+        };
+        let incident = |i: &u32| {
+            let f = &occluders.faces[(i >> 1) as usize];
+            IncidentFace { normal: f.normal, reference: f.triangle << 1 | i & 1, point: f.point, flatness: f.flatness }
+        };
+        let mut faces: Vec<FaceRecord> = occluders.faces.iter().map(face).collect();
+        let mut edges: Vec<EdgeRecord> = occluders.edges.iter().map(edge).collect();
+        let mut incident_faces: Vec<IncidentFace> = occluders.incidences.iter().map(incident).collect();
+        let mut nodes = occluders.face_tree.nodes.clone();
+        // A binding must not be empty: a face without sides covers nothing, and a box inside out is never met.
+        if faces.is_empty() {
+            faces.push(FaceRecord { sides: [NO_SIDE; 4], ..bytemuck::Zeroable::zeroed() });
+            edges.push(bytemuck::Zeroable::zeroed());
+            incident_faces.push(bytemuck::Zeroable::zeroed());
+            nodes.push(BvhNode { low: [1e30; 3], skip: 1, high: [-1e30; 3], leaf: 0 });
+        }
+        Self {
+            boundary,
+            faces: Content::new(bytemuck::cast_slice(&faces)),
+            face_tree: Content::new(bytemuck::cast_slice(&nodes)),
+            edges: Content::new(bytemuck::cast_slice(&edges)),
+            incident_faces: Content::new(bytemuck::cast_slice(&incident_faces)),
+            edge_count: occluders.edges.len() as u32,
+            cut_triangles: occluders.cut,
+            triangles_behind: occluders.behind,
+        }
+    }
+
+    /// All contents, for an engine to upload by key.
+    pub fn contents(&self) -> impl Iterator<Item = &Content> {
+        [&self.faces, &self.face_tree, &self.edges, &self.incident_faces].into_iter()
+    }
+}

@@ -1,0 +1,79 @@
+//! The last step of sampled techniques: masks become visibility and its standard error, and results leave.
+
+use softshadow_plan::{Kernel, Over, Plan, ResourceId};
+
+use crate::parts::VISIBILITY;
+use crate::parts::light_buffers::{self, LightBuffers};
+use crate::parts::shading::{self, Seen};
+use crate::request::Request;
+
+/// Label of the standard errors.
+pub const STANDARD_ERROR: &str = "standard error";
+/// Label of the masks of blocked samples.
+pub const BLOCKED: &str = "blocked samples";
+
+const RESOLVE: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve" };
+const RESOLVE_TEXTURED: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve_textured" };
+const RESOLVE_AREAS: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve_areas" };
+
+/// What a technique found out about its samples.
+#[derive(Debug, Clone, Copy)]
+pub struct Masks {
+    /// Words of blocked samples.
+    pub blocked: ResourceId,
+    /// For how many samples each mask speaks; 0 for all of them.
+    pub decided: ResourceId,
+    /// Visible share of the light's area where that is known, else negative.
+    pub areas: Option<ResourceId>,
+}
+
+/// Adds the passes from masks to results, and the picture where one is wanted.
+pub fn append(
+    plan: &mut Plan,
+    request: &Request<'_>,
+    samples: u32,
+    light: &LightBuffers,
+    receivers: ResourceId,
+    masks: Masks,
+) {
+    let bytes = request.block.count as u64 * 4 * u64::from(request.channels);
+    let visibility = plan.persistent(VISIBILITY, bytes);
+    let standard_error = plan.persistent(STANDARD_ERROR, bytes);
+    let textured = request.channels == 3;
+    let over = Over::Items { count: request.block.count as u32, work_per_item: samples.div_ceil(32) };
+    let radiance = textured.then(|| light_buffers::append_radiance(plan, samples));
+    // A texture's light is in its samples, not in its area.
+    let areas = masks.areas.filter(|_| !textured);
+    let kernel = if textured { RESOLVE_TEXTURED } else { areas.map_or(RESOLVE, |_| RESOLVE_AREAS) };
+    let pass = plan.compute("resolve", "turns masks into visibility and its standard error", kernel, over);
+    pass.bind("sampling", light.sampling)
+        .bind("blocked", masks.blocked)
+        .bind("visibility", visibility)
+        .bind("standard_error", standard_error);
+    match areas {
+        Some(areas) => pass.bind("areas", areas),
+        None => pass.bind("decided", masks.decided),
+    };
+    if let Some(radiance) = radiance {
+        pass.bind("sample_radiance", radiance);
+    }
+    match request.wants.picture {
+        None => {}
+        Some(shading::Shading::Integrated) => {
+            let seen = Seen::Masks { blocked: masks.blocked, decided: masks.decided };
+            shading::append(plan, request, receivers, light, seen, samples);
+        }
+        // The visibility is known after the last pass only.
+        Some(shading::Shading::Modulated) if !request.closes_light => {}
+        Some(shading::Shading::Modulated) => {
+            shading::append(plan, request, receivers, light, Seen::Values(visibility), samples);
+        }
+    }
+    if request.closes_light {
+        plan.outputs.push(visibility);
+        plan.outputs.extend(request.wants.standard_error.then_some(standard_error));
+        plan.outputs.extend(request.wants.sample_masks.then_some(masks.blocked));
+    }
+    // Everybody needs to know which pixels see anything, and that stands in the receivers.
+    plan.outputs.extend(request.opens_block.then_some(receivers));
+}

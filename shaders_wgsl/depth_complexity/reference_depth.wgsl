@@ -1,0 +1,140 @@
+// Counts the layers over the reference point, by the very signs with which the edges count. The twin of `depth_of_reference.rs`.
+//
+// Opens the masks, too: samples below the horizon are hidden, and everything is where there is no view of the light, or where the
+// reference point is hidden: without an edge between, that holds for all samples.
+//#import shared/slice.wgsl
+//#import shared/receiver.wgsl
+//#import depth_complexity/edge.wgsl
+//#import depth_complexity/horizon.wgsl
+//#import depth_complexity/tiles.wgsl
+//#import depth_complexity/tree.wgsl
+
+@group(0) @binding(0) var<uniform> slice: Slice;
+@group(0) @binding(1) var<uniform> light_frame: LightFrame;
+@group(0) @binding(2) var<uniform> frame_samples: FrameSamples;
+@group(0) @binding(3) var<storage, read> receivers: array<Receiver>;
+@group(0) @binding(4) var<storage, read> order: array<u32>;
+@group(0) @binding(5) var<storage, read> faces: array<Face>;
+@group(0) @binding(6) var<storage, read> edges: array<OccluderEdge>;
+@group(0) @binding(7) var<storage, read> face_tree: array<TreeNode>;
+@group(0) @binding(8) var<storage, read_write> slots: array<Slot>;
+@group(0) @binding(9) var<storage, read_write> blocked: array<u32>;
+@group(0) @binding(10) var<storage, read_write> counts: ListCounts;
+
+// Two directions with a smaller sine between them are one, or opposite.
+const NO_TURN: f32 = 1e-6;
+
+// How often a face covers the reference point: its side times how often the loop of its edges' images turns around that point. The twin
+// of `Loop` in `depth_of_reference.rs`.
+fn cover(view: FrameView, face: Face) -> i32 {
+    var has_left = false;
+    var has_right = false;
+    var has_wide = false;
+    var leaves = false;
+    var returns = false;
+    var outward = vec2<f32>(0.0);
+    var homeward = vec2<f32>(0.0);
+    for (var k = 0u; k < 4u; k++) {
+        let reference = face.sides[k];
+        if (reference != NO_SIDE) {
+            let image = edge_image(view, edges[reference >> 1u]);
+            let low_is_ahead = image.low.z > 0.0;
+            let high_is_ahead = image.high.z > 0.0;
+            if (low_is_ahead || high_is_ahead) {
+                let is_forward = (reference & 1u) == 0u;
+                let low = low_direction(image);
+                let high = high_direction(image);
+                let is_left = image.left == is_forward;
+                has_left = has_left || is_left;
+                has_right = has_right || !is_left;
+                has_wide = has_wide || dot(low, high) < 0.0;
+                let infinite = select(low, high, low_is_ahead);
+                let goes_out = low_is_ahead == is_forward;
+                if (low_is_ahead != high_is_ahead) {
+                    outward = select(outward, infinite, goes_out);
+                    homeward = select(infinite, homeward, goes_out);
+                    leaves = leaves || goes_out;
+                    returns = returns || !goes_out;
+                }
+            }
+        }
+    }
+    let side = side_of_plane(face.normal, face.point, face.flatness, view.position);
+    let all_left = has_left && !has_right;
+    let all_right = has_right && !has_left;
+    let either = select(select(0, -1, all_right), 1, all_left);
+    var turns = either;
+    if (leaves && returns) {
+        let across = outward.x * homeward.y - outward.y * homeward.x;
+        let arc = select(-1, 1, across >= 0.0);
+        let if_all_arc = select(0, arc, either == arc);
+        let half_turn = select(select(side, 0, either == -side), if_all_arc, arc == side);
+        let no_length = select(0, either, has_wide);
+        let clear = abs(across) > NO_TURN * length(outward) * length(homeward);
+        turns = select(select(half_turn, no_length, dot(outward, homeward) > 0.0), if_all_arc, clear);
+    }
+    var before = true;
+    if (view.limited) {
+        // height / slope · dot(towards, way) < limit, without dividing.
+        let height = dot(face.normal, face.point - view.position);
+        let slope = dot(face.normal, view.way);
+        before = height * sign(slope) * dot(view.towards, view.way) < view.limit * abs(slope);
+    }
+    return select(0, side * turns, before);
+}
+
+@compute @workgroup_size(64)
+fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x >= slice.count) {
+        return;
+    }
+    let at = slice.first + invocation.x;
+    let index = order[at];
+    let receiver = receivers[index];
+    let view = frame_view(light_frame, receiver.position);
+    let words = (light_frame.sample_count + 31u) / 32u;
+    let sees = receiver.kind != RECEIVER_NONE && view.exists;
+    let is_inside = receiver.kind != RECEIVER_NONE && view.inside;
+    let slope = horizon_slope(view, receiver);
+    let crosses = sees && !is_above_horizon(light_frame, receiver, slope);
+    var visible = 0u;
+    for (var word = 0u; word < words; word++) {
+        var mask = select(0xffffffffu, 0u, sees || is_inside);
+        let here = min(32u, light_frame.sample_count - 32u * word);
+        for (var bit = 0u; bit < select(0u, here, crosses); bit++) {
+            let s = placed_sample(light_frame, view, frame_samples.at[32u * word + bit].xy);
+            mask |= select(0u, 1u << bit, slope.z + slope.x * s.x + slope.y * s.y <= 0.0);
+        }
+        blocked[index * words + word] = mask;
+        visible += here - countOneBits(mask & (0xffffffffu >> (32u - here)));
+    }
+    if (visible == 0u || !sees) {
+        slots[at] = Slot(index, 0u, NO_VIEW, 0u);
+        return;
+    }
+    var depth = 0;
+    var node = 0u;
+    var steps = 0u;
+    while (node < arrayLength(&face_tree) && steps < LONGEST_WALK) {
+        steps++;
+        let box = face_tree[node];
+        let met = way_meets(view.position, view.way, box);
+        node = select(box.skip, node + 1u, met && box.leaf == 0u);
+        let first = box.leaf >> LEAF_BITS;
+        let count = select(0u, box.leaf & ((1u << LEAF_BITS) - 1u), met);
+        for (var k = first; k < first + count; k++) {
+            let face = faces[k];
+            if (face.triangle != receiver.triangle) {
+                depth += cover(view, face);
+            }
+        }
+    }
+    if (node < arrayLength(&face_tree)) {
+        atomicAdd(&counts.unfinished, 1u);
+    }
+    slots[at] = Slot(index, 0u, depth, 0u);
+    // So it stays where no edge lies between this receiver and the light.
+    for (var word = 0u; word < select(0u, words, depth != 0); word++) {
+        blocked[index * words + word] = 0xffffffffu;
+    }
+}

@@ -1,0 +1,73 @@
+// Finds the edges that can be silhouettes over any part of the light, cluster by cluster (Forest et al., section 4.1, accurate).
+//
+// An edge may be left out only if it has exactly two faces, on opposite sides for every point of the light:
+// what it adds on one side it takes away on the other, from whatever receiver. The sides are taken with a margin for rounding, so
+// that an edge is kept wherever a receiver's own signs could say otherwise.
+//#import shared/slice.wgsl
+//#import depth_complexity/frame.wgsl
+//#import depth_complexity/occluders.wgsl
+//#import depth_complexity/clusters.wgsl
+
+@group(0) @binding(0) var<uniform> slice: Slice;
+@group(0) @binding(1) var<uniform> light_frame: LightFrame;
+@group(0) @binding(2) var<uniform> cluster_range: ClusterRange;
+@group(0) @binding(3) var<storage, read> edges: array<OccluderEdge>;
+@group(0) @binding(4) var<storage, read> incident_faces: array<IncidentFace>;
+@group(0) @binding(5) var<storage, read_write> clusters: array<Cluster>;
+
+// Which side of a face the whole light is on; 0 where the face's plane meets the light.
+fn side_of_light(face: IncidentFace) -> i32 {
+    let middle = (light_frame.low + light_frame.high) * 0.5 + light_frame.reference;
+    let half = (light_frame.high - light_frame.low) * 0.5;
+    var height = 0.0;
+    var spread = 0.0;
+    var size = 0.0;
+    if (light_frame.kind == FRAME_SUN) {
+        let x = light_frame.x_row * light_frame.size;
+        let y = light_frame.y_row * light_frame.size;
+        height = dot(face.normal, light_frame.z_row + x * middle.x + y * middle.y);
+        spread = abs(dot(face.normal, x)) * half.x + abs(dot(face.normal, y)) * half.y;
+        size = 1.0;
+    } else {
+        let is_flat = light_frame.kind == FRAME_FLAT;
+        let offset = select(vec3<f32>(0.0), light_frame.x_way * middle.x + light_frame.y_way * middle.y, is_flat);
+        let way = light_frame.origin + offset - face.point;
+        height = dot(face.normal, way);
+        let across = abs(dot(face.normal, light_frame.x_way)) * half.x + abs(dot(face.normal, light_frame.y_way)) * half.y;
+        spread = select(light_frame.size, across, is_flat);
+        size = dot(abs(light_frame.origin) + abs(offset) + abs(face.point), vec3<f32>(1.0));
+    }
+    let margin = spread + 4e-6 * (size + spread);
+    return select(0, 1, height > margin) - select(0, 1, height < -margin);
+}
+
+fn can_be_silhouette(edge: OccluderEdge) -> bool {
+    if (edge.incidence_count != 2u) {
+        return true;
+    }
+    let a = incident_faces[edge.first_incidence];
+    let b = incident_faces[edge.first_incidence + 1u];
+    let side_a = turned(side_of_light(a), a);
+    let side_b = turned(side_of_light(b), b);
+    return side_a + side_b != 0 || side_a == 0;
+}
+
+@compute @workgroup_size(64)
+fn silhouettes(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x >= slice.count) {
+        return;
+    }
+    let index = slice.first + invocation.x;
+    let first = index * CLUSTER;
+    let end = min(first + CLUSTER, cluster_range.edge_count);
+    var found = Cluster(vec3<f32>(1e30), 0u, vec3<f32>(-1e30), 0u);
+    for (var at = first; at < end; at++) {
+        let edge = edges[at];
+        if (can_be_silhouette(edge)) {
+            found.silhouettes |= 1u << (at - first);
+            found.low = min(found.low, min(edge.low, edge.high));
+            found.high = max(found.high, max(edge.low, edge.high));
+        }
+    }
+    clusters[index] = found;
+}

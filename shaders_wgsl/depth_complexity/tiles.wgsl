@@ -1,0 +1,47 @@
+// Tiles: runs of 64 receivers that lie side by side, each in two parts, with the shaft that holds all ways from a part to the light.
+
+const TILE: u32 = 64u;
+
+// Depth of the reference point of a receiver that does not look at the light: nothing there, behind it, or all of it below the horizon.
+const NO_VIEW: i32 = -2147483647;
+
+struct TilePart {
+    planes: array<vec4<f32>, 5>,  // dot(plane.xyz, v) > plane.w: v is outside the shaft
+    low: vec3<f32>,               // box of the receivers
+    receiver_count: u32,          // receivers with a view of the light; 0 for none
+    high: vec3<f32>,
+    reserved: u32,
+}
+
+// A receiver in the order of the tiles.
+struct Slot {
+    receiver: u32,
+    part: u32,       // of its tile
+    depth: i32,      // of the reference point, or NO_VIEW
+    reserved: u32,
+}
+
+// What the passes over the lists of edges report.
+struct ListCounts {
+    parts: atomic<u32>,           // with edges
+    chunks: atomic<u32>,          // handed out; the first is left unused, 0 ends a list
+    edges: atomic<u32>,           // in all lists
+    unfinished: atomic<u32>,      // receivers for which a list had no room, a walk no end, or a counter no bit
+    by_area: atomic<u32>,         // receivers that areas answered
+    reserved0: u32,
+    reserved1: u32,
+    reserved2: u32,
+}
+
+// The lists: for each part of a tile that has edges, the part and its first chunk; then, from `first_chunk_word` on, chunks.
+// A list grows by chunks: the next chunk, how many edges stand in this one, and the edges.
+const CHUNK: u32 = 32u;
+const CHUNK_EDGES: u32 = 30u;
+
+fn first_chunk_word(tile_count: u32) -> u32 {
+    return 4u * tile_count;
+}
+
+fn plane_excludes_box(plane: vec4<f32>, middle: vec3<f32>, half: vec3<f32>) -> bool {
+    return dot(plane.xyz, middle) - dot(abs(plane.xyz), half) > plane.w;
+}
