@@ -149,7 +149,7 @@ fn foliage_and_triangles_in_a_lamp_are_refused_with_the_way_out() {
     assert!(matches!(&refused, Error::Gpu(words) if words.contains("use ray_traced")), "{refused}");
     let lamp = lamp(LightShape::Sphere { radius: 0.4 }, [0.0, 0.0, 0.6]);
     let refused = run(&bodies(), &lamp, &points(vec![[0.0, 0.0, -1.0]])).unwrap_err().to_string();
-    assert!(refused.contains("triangles touch it") && refused.contains("ray_traced"), "{refused}");
+    assert!(refused.contains("triangles touch it") && refused.contains("trace rays"), "{refused}");
 }
 
 #[test]

@@ -86,7 +86,7 @@ impl OccluderContents {
         let occluders = Occluders::new(&triangles, |_| 1.0, &boundary)?;
         if !occluders.touching.is_empty() {
             let count = occluders.touching.len();
-            let reason = format!("{count} triangles touch it; move them apart, or use ray_traced");
+            let reason = format!("{count} triangles touch it; move them apart, or trace rays");
             return Err(SceneError::Invalid { what: "sphere light".into(), reason });
         }
         Ok(Self::lay_out(&occluders, boundary))

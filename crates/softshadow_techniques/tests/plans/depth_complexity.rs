@@ -283,7 +283,7 @@ fn a_sphere_that_triangles_touch_is_refused_with_a_way_out() {
     let fixture = Fixture::new();
     let local = &fixture.scenes[1].local;
     let error = OccluderContents::new(local, boundary_of(local, &fixture.lights[5])).unwrap_err();
-    let reason = "2 triangles touch it; move them apart, or use ray_traced".to_owned();
+    let reason = "2 triangles touch it; move them apart, or trace rays".to_owned();
     assert_eq!(error, SceneError::Invalid { what: "sphere light".into(), reason });
     // One between the sheets touches neither.
     let between = LightShape::Sphere { radius: 0.2 };
