@@ -1,6 +1,6 @@
 //! One receiver's projection on to the light.
 
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use softshadow_scene::{LightFrame, LightKind};
 
 /// A point whose visibility is asked for, where every technique starts: lifted off its surface already.
@@ -131,12 +131,6 @@ impl LightView {
             [q[0] * stretch - light.reference[0], q[1] * stretch - light.reference[1]]
         };
         samples.iter().map(place).collect()
-    }
-
-    /// The projection as a matrix, for those who judge it.
-    #[must_use]
-    pub fn matrix(&self) -> Mat3 {
-        Mat3::from_cols(self.rows[0], self.rows[1], self.rows[2]).transpose()
     }
 }
 

@@ -45,6 +45,8 @@ pub(crate) struct Answers {
     pub(crate) by_area: usize,
     /// Where they were wrong by more than 1e-5: layers overlap between the samples.
     pub(crate) fooled: usize,
+    /// Where they were wrong by more than 0.01, and by more than 0.03.
+    pub(crate) over: [usize; 2],
     pub(crate) worst: f64,
     /// Sums of squared errors where areas answered: of the areas, and of the samples in their place.
     pub(crate) squared: f64,
@@ -58,11 +60,16 @@ impl Answers {
             penumbra: self.penumbra + other.penumbra,
             by_area: self.by_area + other.by_area,
             fooled: self.fooled + other.fooled,
+            over: [0, 1].map(|k| self.over[k] + other.over[k]),
             worst: self.worst.max(other.worst),
             squared: self.squared + other.squared,
             squared_sampled: self.squared_sampled + other.squared_sampled,
             worst_sampled: self.worst_sampled.max(other.worst_sampled),
         }
+    }
+
+    pub(crate) fn share_over(&self, level: usize) -> f64 {
+        self.over[level] as f64 / self.by_area as f64
     }
 
     pub(crate) fn share_fooled(&self) -> f64 {
@@ -92,6 +99,7 @@ pub(crate) fn judge_area(setup: &Setup, parts: Parts, receiver: &Receiver) -> An
         let error = (f64::from(area) - truth).abs();
         answers.by_area = 1;
         answers.fooled = usize::from(error > WHOLE);
+        answers.over = [0.01, 0.03].map(|level| usize::from(error > level));
         answers.worst = error;
         answers.squared = error * error;
         answers.squared_sampled = sampled * sampled;
