@@ -183,6 +183,7 @@ fn bound_tiles(@builtin(global_invocation_id) invocation: vec3<u32>) {
         bounded.low = halves[part].low;
         bounded.high = halves[part].high;
         bounded.receiver_count = halves[part].count;
+        bounded.has_faces = 0u;
         if (bounded.receiver_count > 0u) {
             bounded.planes = shaft(halves[part], first, end, split, part);
         }

@@ -26,16 +26,6 @@ struct Shaft {
     half: vec3<f32>,
 }
 
-fn meets_box(shaft: Shaft, low: vec3<f32>, high: vec3<f32>) -> bool {
-    let middle = (low + high) * 0.5;
-    let half = (high - low) * 0.5;
-    return !(plane_excludes_box(shaft.planes[0], middle, half)
-        || plane_excludes_box(shaft.planes[1], middle, half)
-        || plane_excludes_box(shaft.planes[2], middle, half)
-        || plane_excludes_box(shaft.planes[3], middle, half)
-        || plane_excludes_box(shaft.planes[4], middle, half));
-}
-
 fn plane_excludes(plane: vec4<f32>, a: vec3<f32>, b: vec3<f32>) -> bool {
     return dot(plane.xyz, a) > plane.w && dot(plane.xyz, b) > plane.w;
 }
@@ -77,7 +67,7 @@ fn cull(@builtin(global_invocation_id) invocation: vec3<u32>) {
     }
     let index = slice.first + invocation.x;
     let part = parts[index];
-    if (part.receiver_count == 0u) {
+    if (part.receiver_count == 0u || part.has_faces == 0u) {
         return;
     }
     let shaft = Shaft(part.planes, (part.low + part.high) * 0.5, (part.high - part.low) * 0.5);
@@ -92,12 +82,12 @@ fn cull(@builtin(global_invocation_id) invocation: vec3<u32>) {
     var full = false;
     for (var g = 0u; g < group_count; g++) {
         let group = groups_of_clusters[g];
-        var waiting = select(0u, group.silhouettes, group.silhouettes != 0u && meets_box(shaft, group.low, group.high));
+        var waiting = select(0u, group.silhouettes, group.silhouettes != 0u && shaft_meets_box(shaft.planes, group.low, group.high));
         while (waiting != 0u) {
             let c = g * CLUSTER + firstTrailingBit(waiting);
             waiting &= waiting - 1u;
             let cluster = clusters[c];
-            var bits = select(0u, cluster.silhouettes, meets_box(shaft, cluster.low, cluster.high));
+            var bits = select(0u, cluster.silhouettes, shaft_meets_box(shaft.planes, cluster.low, cluster.high));
             steps += 1u + countOneBits(bits);
             if (steps > LONGEST_WALK * 4u) {
                 full = true;

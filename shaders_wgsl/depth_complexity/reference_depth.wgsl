@@ -1,25 +1,23 @@
 // Counts the layers over the reference point, by the very signs with which the edges count. The twin of `depth_of_reference.rs`.
 //
-// Opens the masks, too: samples below the horizon are hidden, and everything is where there is no view of the light, or where the
-// reference point is hidden: without an edge between, that holds for all samples.
+// Where no face lies between a part of a tile and the light there is nothing to count. Where the reference point is hidden, all samples
+// are, until a fold of edges says otherwise.
 //#import shared/slice.wgsl
 //#import shared/receiver.wgsl
 //#import depth_complexity/edge.wgsl
-//#import depth_complexity/horizon.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/tree.wgsl
 
 @group(0) @binding(0) var<uniform> slice: Slice;
 @group(0) @binding(1) var<uniform> light_frame: LightFrame;
-@group(0) @binding(2) var<uniform> frame_samples: FrameSamples;
-@group(0) @binding(3) var<storage, read> receivers: array<Receiver>;
-@group(0) @binding(4) var<storage, read> order: array<u32>;
-@group(0) @binding(5) var<storage, read> faces: array<Face>;
-@group(0) @binding(6) var<storage, read> edges: array<OccluderEdge>;
-@group(0) @binding(7) var<storage, read> face_tree: array<TreeNode>;
-@group(0) @binding(8) var<storage, read_write> slots: array<Slot>;
-@group(0) @binding(9) var<storage, read_write> blocked: array<u32>;
-@group(0) @binding(10) var<storage, read_write> counts: ListCounts;
+@group(0) @binding(2) var<storage, read> receivers: array<Receiver>;
+@group(0) @binding(3) var<storage, read> faces: array<Face>;
+@group(0) @binding(4) var<storage, read> edges: array<OccluderEdge>;
+@group(0) @binding(5) var<storage, read> face_tree: array<TreeNode>;
+@group(0) @binding(6) var<storage, read> parts: array<TilePart>;
+@group(0) @binding(7) var<storage, read_write> slots: array<Slot>;
+@group(0) @binding(8) var<storage, read_write> blocked: array<u32>;
+@group(0) @binding(9) var<storage, read_write> counts: ListCounts;
 
 // Two directions with a smaller sine between them are one, or opposite.
 const NO_TURN: f32 = 1e-6;
@@ -89,29 +87,12 @@ fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
         return;
     }
     let at = slice.first + invocation.x;
-    let index = order[at];
-    let receiver = receivers[index];
-    let view = frame_view(light_frame, receiver.position);
-    let words = (light_frame.sample_count + 31u) / 32u;
-    let sees = receiver.kind != RECEIVER_NONE && view.exists;
-    let is_inside = receiver.kind != RECEIVER_NONE && view.inside;
-    let slope = horizon_slope(view, receiver);
-    let crosses = sees && !is_above_horizon(light_frame, receiver, slope);
-    var visible = 0u;
-    for (var word = 0u; word < words; word++) {
-        var mask = select(0xffffffffu, 0u, sees || is_inside);
-        let here = min(32u, light_frame.sample_count - 32u * word);
-        for (var bit = 0u; bit < select(0u, here, crosses); bit++) {
-            let s = placed_sample(light_frame, view, frame_samples.at[32u * word + bit].xy);
-            mask |= select(0u, 1u << bit, slope.z + slope.x * s.x + slope.y * s.y <= 0.0);
-        }
-        blocked[index * words + word] = mask;
-        visible += here - countOneBits(mask & (0xffffffffu >> (32u - here)));
-    }
-    if (visible == 0u || !sees) {
-        slots[at] = Slot(index, 0u, NO_VIEW, 0u);
+    let slot = slots[at];
+    if (slot.depth == NO_VIEW || parts[2u * (at / TILE) + slot.part].has_faces == 0u) {
         return;
     }
+    let receiver = receivers[slot.receiver];
+    let view = frame_view(light_frame, receiver.position);
     var depth = 0;
     var node = 0u;
     var steps = 0u;
@@ -132,9 +113,9 @@ fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if (node < arrayLength(&face_tree)) {
         atomicAdd(&counts.unfinished, 1u);
     }
-    slots[at] = Slot(index, 0u, depth, 0u);
-    // So it stays where no edge lies between this receiver and the light.
+    slots[at].depth = depth;
+    let words = (light_frame.sample_count + 31u) / 32u;
     for (var word = 0u; word < select(0u, words, depth != 0); word++) {
-        blocked[index * words + word] = 0xffffffffu;
+        blocked[slot.receiver * words + word] = 0xffffffffu;
     }
 }

@@ -10,7 +10,7 @@ struct TilePart {
     low: vec3<f32>,               // box of the receivers
     receiver_count: u32,          // receivers with a view of the light; 0 for none
     high: vec3<f32>,
-    reserved: u32,
+    has_faces: u32,               // whether any face lies in the shaft
 }
 
 // A receiver in the order of the tiles.
@@ -44,4 +44,14 @@ fn first_chunk_word(tile_count: u32) -> u32 {
 
 fn plane_excludes_box(plane: vec4<f32>, middle: vec3<f32>, half: vec3<f32>) -> bool {
     return dot(plane.xyz, middle) - dot(abs(plane.xyz), half) > plane.w;
+}
+
+fn shaft_meets_box(planes: array<vec4<f32>, 5>, low: vec3<f32>, high: vec3<f32>) -> bool {
+    let middle = (low + high) * 0.5;
+    let half = (high - low) * 0.5;
+    return !(plane_excludes_box(planes[0], middle, half)
+        || plane_excludes_box(planes[1], middle, half)
+        || plane_excludes_box(planes[2], middle, half)
+        || plane_excludes_box(planes[3], middle, half)
+        || plane_excludes_box(planes[4], middle, half));
 }

@@ -81,6 +81,8 @@ const SAMPLING_BOUND: f32 = 2.0;
 
 const SILHOUETTES: Kernel = Kernel { file: "depth_complexity/silhouettes.wgsl", entry: "silhouettes" };
 const BOUND_CLUSTERS: Kernel = Kernel { file: "depth_complexity/bound_clusters.wgsl", entry: "bound_clusters" };
+const OPEN_MASKS: Kernel = Kernel { file: "depth_complexity/open_masks.wgsl", entry: "open_masks" };
+const FIND_FACES: Kernel = Kernel { file: "depth_complexity/find_faces.wgsl", entry: "find_faces" };
 const REFERENCE_DEPTH: Kernel = Kernel { file: "depth_complexity/reference_depth.wgsl", entry: "reference_depth" };
 const BOUND_TILES: Kernel = Kernel { file: "depth_complexity/bound_tiles.wgsl", entry: "bound_tiles" };
 const CULL: Kernel = Kernel { file: "depth_complexity/cull.wgsl", entry: "cull" };
@@ -169,33 +171,18 @@ pub(crate) fn plan(request: &Request<'_>, settings: &DepthComplexity) -> Plan {
     let order = plan.parameter("receiver order", count as u64 * 4);
     let slots = plan.buffer("slots", u64::from(tiles(request) * TILE) * SLOT_BYTES);
     let blocked = plan.buffer(BLOCKED, count as u64 * u64::from(settings.words()) * 4);
-    let counts = plan.buffer("running counts", COUNT_BYTES);
-    plan.clear("no counts", "nothing is counted yet", counts);
-    let Some(occluders) = request.occluders else { return plan };
-    let edges = plan.uploaded("edges", &occluders.edges);
     let items = |n: u32, work_per_item: u32| Over::Items { count: n, work_per_item };
-    let reads = Reads { frame, samples, receivers, slots, blocked, counts, edges };
-
-    let faces = plan.uploaded("faces", &occluders.faces);
-    let face_tree = plan.uploaded("face hierarchy", &occluders.face_tree);
-    let why = "counts the layers over one point of the light, and opens the masks with the horizon";
-    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(count as u32, 4))
+    let why = "blocks what lies below the horizon or behind the light";
+    plan.compute("open masks", why, OPEN_MASKS, items(count as u32, settings.words()))
         .bind("light_frame", frame)
         .bind("frame_samples", samples)
         .bind("receivers", receivers)
         .bind("order", order)
-        .bind("faces", faces)
-        .bind("edges", edges)
-        .bind("face_tree", face_tree)
         .bind("slots", slots)
-        .bind("blocked", blocked)
-        .bind("counts", counts);
-
-    let areas = (occluders.edge_count > 0).then(|| append_fold(&mut plan, request, occluders, &reads));
-    let report = plan.buffer(LIST_COUNTS, COUNT_BYTES);
-    let why = "tells how many edges there were, what areas answered, and whether anything did not fit";
-    plan.copy("report counts", why, [counts, report], COUNT_BYTES);
-    plan.outputs.push(report);
+        .bind("blocked", blocked);
+    let reads = Reads { frame, samples, receivers, slots, blocked };
+    let occluders = request.occluders.filter(|occluders| occluders.edge_count > 0);
+    let areas = occluders.map(|occluders| append_fold(&mut plan, request, occluders, &reads));
 
     let decided = plan.buffer("decided samples", count as u64 * 4);
     plan.clear("all samples decided", "every mask speaks for all samples", decided);
@@ -211,14 +198,15 @@ struct Reads {
     receivers: ResourceId,
     slots: ResourceId,
     blocked: ResourceId,
-    counts: ResourceId,
-    edges: ResourceId,
 }
 
-/// The passes from edges to masks; returns the visible areas.
+/// The passes from occluders to masks; returns the visible areas.
 fn append_fold(plan: &mut Plan, request: &Request<'_>, occluders: &OccluderContents, reads: &Reads) -> ResourceId {
     let clusters_in = |n: u32| n.div_ceil(CLUSTER);
     let (cluster_count, tile_count) = (clusters_in(occluders.edge_count), tiles(request));
+    let faces = plan.uploaded("faces", &occluders.faces);
+    let face_tree = plan.uploaded("face hierarchy", &occluders.face_tree);
+    let edges = plan.uploaded("edges", &occluders.edges);
     let incident_faces = plan.uploaded("faces at edges", &occluders.incident_faces);
     let range = plan.parameter("cluster range", size_of::<ClusterRange>() as u64);
     let clusters = plan.buffer("clusters", u64::from(cluster_count) * CLUSTER_BYTES);
@@ -226,20 +214,10 @@ fn append_fold(plan: &mut Plan, request: &Request<'_>, occluders: &OccluderConte
     let parts = plan.buffer("tile parts", 2 * u64::from(tile_count) * PART_BYTES);
     let lists = plan.buffer("edge lists", u64::from(tile_count) * (16 + CHUNKS_PER_TILE * CHUNK_BYTES));
     let areas = plan.buffer("visible areas", request.block.count as u64 * 4);
+    let counts = plan.buffer("running counts", COUNT_BYTES);
+    plan.clear("no counts", "nothing is counted yet", counts);
     let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
 
-    let why = "finds the edges that can be silhouettes over any part of the light";
-    plan.compute("find silhouettes", why, SILHOUETTES, items(cluster_count, 16))
-        .bind("light_frame", reads.frame)
-        .bind("cluster_range", range)
-        .bind("edges", reads.edges)
-        .bind("incident_faces", incident_faces)
-        .bind("clusters", clusters);
-    let why = "bounds 32 clusters of edges at a time";
-    plan.compute("bound clusters", why, BOUND_CLUSTERS, items(clusters_in(cluster_count), 8))
-        .bind("cluster_range", range)
-        .bind("clusters", clusters)
-        .bind("groups_of_clusters", groups);
     let why = "bounds the receivers of each tile, and the shaft between them and the light";
     plan.compute("bound tiles", why, BOUND_TILES, items(tile_count, 64))
         .bind("light_frame", reads.frame)
@@ -248,20 +226,47 @@ fn append_fold(plan: &mut Plan, request: &Request<'_>, occluders: &OccluderConte
         .bind("slots", reads.slots)
         .bind("parts", parts)
         .bind("areas", areas);
+    let why = "finds the tiles with any face between them and the light";
+    plan.compute("find faces", why, FIND_FACES, items(2 * tile_count, 64))
+        .bind("face_tree", face_tree)
+        .bind("parts", parts);
+    let why = "counts the layers over one point of the light";
+    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(request.block.count as u32, 4))
+        .bind("light_frame", reads.frame)
+        .bind("receivers", reads.receivers)
+        .bind("faces", faces)
+        .bind("edges", edges)
+        .bind("face_tree", face_tree)
+        .bind("parts", parts)
+        .bind("slots", reads.slots)
+        .bind("blocked", reads.blocked)
+        .bind("counts", counts);
+    let why = "finds the edges that can be silhouettes over any part of the light";
+    plan.compute("find silhouettes", why, SILHOUETTES, items(cluster_count, 16))
+        .bind("light_frame", reads.frame)
+        .bind("cluster_range", range)
+        .bind("edges", edges)
+        .bind("incident_faces", incident_faces)
+        .bind("clusters", clusters);
+    let why = "bounds 32 clusters of edges at a time";
+    plan.compute("bound clusters", why, BOUND_CLUSTERS, items(clusters_in(cluster_count), 8))
+        .bind("cluster_range", range)
+        .bind("clusters", clusters)
+        .bind("groups_of_clusters", groups);
     let why = "lists for each tile the edges that can be silhouettes in its shaft";
     plan.compute("cull edges", why, CULL, items(2 * tile_count, 512))
         .bind("cluster_range", range)
-        .bind("edges", reads.edges)
+        .bind("edges", edges)
         .bind("incident_faces", incident_faces)
         .bind("clusters", clusters)
         .bind("groups_of_clusters", groups)
         .bind("parts", parts)
         .bind("lists", lists)
-        .bind("counts", reads.counts);
+        .bind("counts", counts);
     let size = plan.buffer("fold dispatch", 12);
     plan.compute("size fold", "sizes the dispatch over the tiles that have edges", SIZE_FOLD, items(1, 1))
         .bind("light_frame", reads.frame)
-        .bind("counts", reads.counts)
+        .bind("counts", counts)
         .bind("dispatch_size", size);
     let settings = plan.parameter("fold settings", size_of::<FoldSettings>() as u64);
     let outline = plan.parameter("light outline", MOST_CORNERS as u64 * 16);
@@ -272,13 +277,17 @@ fn append_fold(plan: &mut Plan, request: &Request<'_>, occluders: &OccluderConte
         .bind("fold_settings", settings)
         .bind("outline", outline)
         .bind("receivers", reads.receivers)
-        .bind("edges", reads.edges)
+        .bind("edges", edges)
         .bind("incident_faces", incident_faces)
         .bind("slots", reads.slots)
         .bind("lists", lists)
         .bind("blocked", reads.blocked)
         .bind("areas", areas)
-        .bind("counts", reads.counts);
+        .bind("counts", counts);
+    let report = plan.buffer(LIST_COUNTS, COUNT_BYTES);
+    let why = "tells how many edges there were, what areas answered, and whether anything did not fit";
+    plan.copy("report counts", why, [counts, report], COUNT_BYTES);
+    plan.outputs.push(report);
     areas
 }
 

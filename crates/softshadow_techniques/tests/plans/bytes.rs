@@ -105,21 +105,21 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
         }
         Technique::DepthComplexity(_) => {
             let ([faces, edges, sides], tiles) = (hidden_by(request), count.div_ceil(64));
-            // A face: its plane, its triangle, how flat it is, and four sides. An edge: two ends and its faces. A binding is never empty.
-            add("faces".into(), faces.max(1) * 48);
-            add("edges".into(), edges.max(1) * 32);
-            // So few faces have a leaf each.
-            add("face hierarchy".into(), (2 * faces).max(2) * 32 - 32);
             add("light frame".into(), 128);
             add("frame samples".into(), 256 * 16);
             add("receiver order".into(), count * 4);
             add("slots".into(), tiles * 64 * 16);
-            add("running counts".into(), 32);
-            add("list counts".into(), 32);
             add("blocked samples".into(), count * samples.div_ceil(32) * 4);
             add("decided samples".into(), count * 4);
             add("standard error".into(), count * 4 * u64::from(request.channels));
             if edges > 0 {
+                // A face: its plane, its triangle, how flat it is, and four sides. An edge: two ends and its faces.
+                add("faces".into(), faces * 48);
+                add("edges".into(), edges * 32);
+                // So few faces have a leaf each.
+                add("face hierarchy".into(), (2 * faces - 1) * 32);
+                add("running counts".into(), 32);
+                add("list counts".into(), 32);
                 add("faces at edges".into(), sides * 32);
                 add("cluster range".into(), 16);
                 add("clusters".into(), edges.div_ceil(32) * 32);

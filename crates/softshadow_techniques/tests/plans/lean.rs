@@ -24,7 +24,18 @@ const FOUND: &[&str] = &["no gathered 0", "gather 0", "size narrow 0", "no candi
 const TRACED: &[&str] = &["size trace 0", "trace 0", "report 0", "resolve"];
 
 /// From edges to masks: which can be silhouettes at all, which lie before a tile, and what they add up to.
-const FOLDED: &[&str] = &["find silhouettes", "bound clusters", "bound tiles", "cull edges", "size fold", "fold edges"];
+const FOLDED: &[&str] = &[
+    "no counts",
+    "bound tiles",
+    "find faces",
+    "count reference depth",
+    "find silhouettes",
+    "bound clusters",
+    "cull edges",
+    "size fold",
+    "fold edges",
+    "report counts",
+];
 
 fn labels(plan: &Plan) -> Vec<&str> {
     plan.passes.iter().map(|p| p.label.as_str()).collect()
@@ -83,7 +94,7 @@ fn the_plainest_depth_complexity_request_folds_and_shades_nothing() {
     let fixture = Fixture::new();
     let request = fixture.request(1, fixture.points());
     let plan = silhouettes(true).plan(&request);
-    let (first, last) = (["place points", "no counts", "count reference depth"], ["report counts", "resolve"]);
+    let (first, last) = (["place points", "open masks"], ["resolve"]);
     let without_clear = |plan: &Plan| -> Vec<String> {
         labels(plan).into_iter().filter(|l| *l != "all samples decided").map(str::to_owned).collect()
     };
@@ -116,12 +127,21 @@ fn without_triangles_no_edge_is_looked_for() {
                 let plan = silhouettes(exact_area).plan(&fixture.request_for(scene, receivers, light));
                 let found: Vec<&str> = labels(&plan).into_iter().filter(|label| FOLDED.contains(label)).collect();
                 assert_eq!(found, if folds { FOLDED } else { &[] }, "{plan}");
-                for label in ["faces at edges", "clusters", "groups of clusters", "edge lists", "visible areas"] {
+                for label in [
+                    "faces",
+                    "edges",
+                    "faces at edges",
+                    "clusters",
+                    "groups of clusters",
+                    "edge lists",
+                    "visible areas",
+                ] {
                     assert_eq!(plan.find(label).is_some(), folds, "{label}");
                 }
                 // Masks open with the horizon in any scene, and results leave.
-                assert!(labels(&plan).contains(&"count reference depth"));
-                assert_eq!(&outputs(&plan)[..2], ["list counts", "visibility"]);
+                assert!(labels(&plan).contains(&"open masks"));
+                assert_eq!(outputs(&plan).contains(&"list counts"), folds);
+                assert!(outputs(&plan).contains(&"visibility"));
             }
         }
     }
@@ -160,11 +180,11 @@ fn what_edges_pass_on_is_written_before_it_is_read() {
     for (passes, name, label) in [
         (&["bound clusters", "cull edges"][..], "clusters", "clusters"),
         (&["bound clusters", "cull edges"], "groups_of_clusters", "groups of clusters"),
-        (&["bound tiles", "cull edges"], "parts", "tile parts"),
+        (&["bound tiles", "find faces", "count reference depth", "cull edges"], "parts", "tile parts"),
         (&["cull edges", "fold edges"], "lists", "edge lists"),
         (&["count reference depth", "cull edges", "size fold", "fold edges"], "counts", "running counts"),
-        (&["count reference depth", "bound tiles", "fold edges"], "slots", "slots"),
-        (&["count reference depth", "fold edges", "resolve"], "blocked", "blocked samples"),
+        (&["open masks", "bound tiles", "count reference depth", "fold edges"], "slots", "slots"),
+        (&["open masks", "count reference depth", "fold edges", "resolve"], "blocked", "blocked samples"),
         (&["bound tiles", "fold edges", "resolve"], "areas", "visible areas"),
     ] {
         let places = passes.iter().map(|pass| labels(&plan).iter().position(|l| l == pass).unwrap());
