@@ -150,7 +150,9 @@ fn shaft(box: Box, first: u32, end: u32, split: Split, part: u32) -> array<vec4<
             usable,
         );
     }
-    planes[4] = widened(axes.z, back + dot(axes.z, axes.origin), size);
+    // Receivers around a ball do not reach as far as the ball itself.
+    let farthest = select(back, max(back, r), is_sphere);
+    planes[4] = widened(axes.z, farthest + dot(axes.z, axes.origin), size);
     return planes;
 }
 

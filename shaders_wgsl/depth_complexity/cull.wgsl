@@ -60,6 +60,16 @@ fn matters(edge: OccluderEdge, shaft: Shaft) -> bool {
     return side_a + side_b != 0 || side_a == 0;
 }
 
+// Whether loops still run.
+fn has_steps_left() -> bool {
+    var steps = 0u;
+    for (var k = 0u; k < LAST_STEPS; k++) {
+        // Read from a buffer, so that nobody can tell the number beforehand.
+        steps += select(0u, 1u, edges[min(k, arrayLength(&edges) - 1u)].incidence_count != 0xffffffffu);
+    }
+    return steps == LAST_STEPS;
+}
+
 @compute @workgroup_size(64)
 fn cull(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if (invocation.x >= slice.count) {
@@ -129,7 +139,7 @@ fn cull(@builtin(global_invocation_id) invocation: vec3<u32>) {
         lists[2u * slot + 1u] = first_chunk;
         atomicAdd(&counts.edges, total);
     }
-    if (full) {
+    if (full || !has_steps_left()) {
         atomicAdd(&counts.unfinished, part.receiver_count);
     }
 }

@@ -6,6 +6,7 @@
 //#import depth_complexity/counters.wgsl
 //#import depth_complexity/area.wgsl
 //#import depth_complexity/tiles.wgsl
+//#import depth_complexity/walk.wgsl
 
 @group(0) @binding(0) var<uniform> light_frame: LightFrame;
 @group(0) @binding(1) var<uniform> frame_samples: FrameSamples;
@@ -31,8 +32,11 @@ struct FoldSettings {
     tile_count: u32,
 }
 
-// Drivers on the CPU end loops after 65,535 steps; who would need more is counted.
+// A list that is longer than this many steps is given up, and counted.
 const MOST_STEPS: u32 = 60000u;
+
+// Layers of which areas are believed: far below where counters or sums of areas wrap.
+const MOST_AREA_LAYERS: u32 = 127u;
 
 // Areas are summed in this fixed point, so that the order of edges changes no bit.
 const AREA_UNITS: f32 = 4194304.0;
@@ -100,7 +104,7 @@ fn visible_area(sums: Sums, depth: i32, hidden_samples: vec2<u32>, sampled: f32)
     let nothing_hidden = (hidden_samples.x | hidden_samples.y) == 0u;
     let single = counters_single_value(sums.counters, hidden_samples);
     let layers = select(single, sums.smallest, nothing_hidden);
-    let agrees = layers > 0u && layers <= LARGEST_COUNT && (depth == 0 || depth == i32(layers));
+    let agrees = layers > 0u && layers <= MOST_AREA_LAYERS && (depth == 0 || depth == i32(layers));
     let total = f32(depth) * light_frame.area + f32(sums.area) / AREA_UNITS;
     let visible = 1.0 - total / (f32(max(layers, 1u)) * light_frame.area);
     let believed = agrees && abs(visible - sampled) <= fold_settings.sampling_bound;
@@ -207,6 +211,16 @@ fn crossed_exactly(view: FrameView, image: EdgeImage, first: u32, count: u32) ->
     return mask;
 }
 
+// Whether loops still run.
+fn has_steps_left() -> bool {
+    var steps = 0u;
+    for (var k = 0u; k < LAST_STEPS; k++) {
+        // Read from a buffer, so that nobody can tell the number beforehand.
+        steps += select(0u, 1u, edges[min(k, arrayLength(&edges) - 1u)].incidence_count != 0xffffffffu);
+    }
+    return steps == LAST_STEPS;
+}
+
 @compute @workgroup_size(64)
 fn fold(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -245,8 +259,8 @@ fn fold(
         }
         chunk = lists[at];
     }
-    if (chunk != 0u) {
+    finish(sums, view, receiver, task, wants_area);
+    if (chunk != 0u || !has_steps_left()) {
         atomicAdd(&counts.unfinished, 1u);
     }
-    finish(sums, view, receiver, task, wants_area);
 }

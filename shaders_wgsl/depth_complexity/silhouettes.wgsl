@@ -37,7 +37,8 @@ fn side_of_light(face: IncidentFace) -> i32 {
         spread = select(light_frame.size, across, is_flat);
         size = dot(abs(light_frame.origin) + abs(offset) + abs(face.point), vec3<f32>(1.0));
     }
-    let margin = spread + 4e-6 * (size + spread);
+    // Local scenes lie within 1: so far can a receiver be whose own sign has to agree.
+    let margin = spread + 4e-6 * (1.0 + size + spread);
     return select(0, 1, height > margin) - select(0, 1, height < -margin);
 }
 

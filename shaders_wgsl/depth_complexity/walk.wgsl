@@ -3,3 +3,7 @@
 // Mesa's software driver ends all loops of an invocation once they took 65,535 steps together, without a word. So walks are bounded, and
 // those that were not finished are counted.
 const LONGEST_WALK: u32 = 12000u;
+
+// How the steps are shared among the lanes of a vector is the driver's affair. So every kernel with long loops ends with one of this
+// many steps: where that is cut short, so may be what came before.
+const LAST_STEPS: u32 = 8u;

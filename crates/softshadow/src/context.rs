@@ -140,12 +140,14 @@ impl Context {
             let mut kept = lock(&self.occluders);
             let is_it =
                 |(id, known): &&(u64, Arc<OccluderContents>)| *id == scene.identity() && known.boundary == boundary;
-            if let Some((_, known)) = kept.iter().find(is_it) {
-                return Ok(Arc::clone(known));
+            if let Some(at) = kept.iter().position(|entry| is_it(&entry)) {
+                let known = kept.remove(at);
+                kept.extend(known);
+                return Ok(Arc::clone(&kept[kept.len() - 1].1));
             }
             let made = Arc::new(OccluderContents::new(&contents.local, boundary)?);
             kept.push_back((scene.identity(), Arc::clone(&made)));
-            if kept.len() > KEPT_SCENES {
+            if kept.len() > KEPT_SCENES.max(lights.len()) {
                 kept.pop_front();
             }
             Ok(made)

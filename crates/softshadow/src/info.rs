@@ -20,7 +20,8 @@ pub struct Info {
     /// Receivers for which rays were traced, added up over lights, passes and sub-scenes; the others have nothing between them
     /// and the light.
     pub traced_receivers: u64,
-    /// Receivers that the visible area of a light answered, added up over lights and passes; samples answered the others.
+    /// Receivers for which the first 64 samples let the visible area of a light answer, added up over lights and passes. Of more than
+    /// 64 samples the others may contradict, and answer after all.
     pub area_receivers: u64,
     /// Silhouette edges in the lists of all tiles, added up over lights and passes.
     pub silhouette_edges: u64,

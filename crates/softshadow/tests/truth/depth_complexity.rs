@@ -6,7 +6,7 @@ use softshadow::{
 };
 
 use crate::common::{Random, context, lamp, points, ray_traced, rectangle, see, shipped, surface_points};
-use crate::shapes::{plate, scene, sphere, torus};
+use crate::shapes::{Point, Triangle, plate, quad, scene, sphere, torus};
 
 fn folded(samples: u32) -> DepthComplexity {
     DepthComplexity { samples, exact_area: false, ..DepthComplexity::default() }
@@ -86,6 +86,66 @@ fn lights_within_the_scene_cut_it() {
     let (edges, differ, hidden) = against_rays(&scene, &[light], &under, 64);
     assert!(edges.info.cut_triangles > 50 && hidden > 100_000);
     assert_eq!(differ, 0);
+}
+
+#[test]
+fn receivers_around_a_ball_of_light() {
+    // One flat tile of points on both sides of the ball: the box of its shaft reaches beyond its receivers.
+    let quads: Vec<Triangle> = (0..8)
+        .flat_map(|i| {
+            let (s, c) = (std::f64::consts::TAU * f64::from(i) / 8.0).sin_cos();
+            let (x, y) = (2.0 * c, 2.0 * s);
+            quad([x - 0.2, y - 0.2, 0.47], [x + 0.2, y - 0.2, 0.47], [x + 0.2, y + 0.2, 0.77], [x - 0.2, y + 0.2, 0.77])
+        })
+        .collect();
+    let light = lamp(LightShape::Sphere { radius: 1.0 }, [0.0; 3]);
+    let grid = (0..64).map(|i| [f64::from(i % 8) * 2.0 - 7.0, f64::from(i / 8) * 2.0 - 7.0, 0.3]).collect();
+    let (edges, differ, hidden) = against_rays(&scene(&quads), &[light], &points(grid), 64);
+    assert!(hidden > 100 && edges.info.silhouette_edges > 0, "{hidden}");
+    assert!(differ <= 1, "{differ} samples differ");
+}
+
+#[test]
+fn folds_that_a_driver_cuts_short_are_told() {
+    // Points side by side, each with triangles of its own right before it: one list for all. It either fits, with the bits of rays, or
+    // it is refused; never anything between.
+    let mut random = Random(10);
+    let mut refused = 0;
+    // Far away, so that there is room for long lists.
+    let far = random.points(4032, [30.0, 50.0], [30.0, 50.0], [0.0, 0.0]);
+    for each in [50, 90, 110, 130, 150, 200, 260] {
+        let mut soup = Vec::new();
+        let receivers: Vec<Point> = (0..64).map(|i| [f64::from(i % 8) * 0.1, f64::from(i / 8) * 0.1, 0.0]).collect();
+        for p in &receivers {
+            for _ in 0..each {
+                let at = random.point([-0.04, 0.04], [-0.04, 0.04], [0.05, 0.3]);
+                let corner = |random: &mut Random| {
+                    let off = random.point([-0.01, 0.01], [-0.01, 0.01], [-0.01, 0.01]);
+                    [0, 1, 2].map(|k| p[k] + at[k] + off[k])
+                };
+                soup.push([corner(&mut random), corner(&mut random), corner(&mut random)]);
+            }
+        }
+        let (scene, light) = (scene(&soup), lamp(rectangle(0.4, 0.4), [0.35, 0.35, 2.0]));
+        let technique = Technique::DepthComplexity(folded(64));
+        let options = Options { sample_masks: true, ..Options::default() };
+        let lights = std::slice::from_ref(&light);
+        let receivers = points([receivers, far.clone()].concat());
+        match visibility(context(), &scene, lights, &receivers, &technique, &options, &mut |_, _| true) {
+            Ok(seen) => {
+                let rays = see(&scene, lights, &receivers, &ray_traced(64));
+                let pairs = seen.masks.as_ref().unwrap().bits.iter().zip(&rays.masks.as_ref().unwrap().bits);
+                let differ: u32 = pairs.map(|(a, b)| (a ^ b).count_ones()).sum();
+                assert!(differ <= 1, "{each} triangles a point: {differ} samples differ");
+            }
+            Err(error) => {
+                assert!(error.to_string().contains("use ray_traced"), "{error}");
+                refused += 1;
+            }
+        }
+    }
+    println!("{refused} of 7 scenes refused");
+    assert!((1..7).contains(&refused), "{refused} of 7 scenes are refused");
 }
 
 #[test]
