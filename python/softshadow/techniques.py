@@ -97,9 +97,9 @@ class HardShadowMap(Technique):
 class DepthComplexity(Technique):
     """Silhouette edges and counters (Forest, Barthe and Paulin 2008): as accurate as rays to the same samples.
 
-    Where a single layer hides the light, its visible area answers exactly, without sampling noise; not for spheres, suns
-    wider than half a degree, polygons of more than 64 corners, nor in a call with a textured light. Not for foliage: a
-    scene in which too many edges lie before one receiver raises an error that says so.
+    Where a single layer hides the light, its visible area answers exactly, without sampling noise; not for spheres,
+    suns wider than half a degree, polygons of more than 64 corners, nor in a call with a textured light. Not for
+    foliage: a scene in which too many edges lie before one receiver raises an error that says so.
 
     Parameters
     ----------
