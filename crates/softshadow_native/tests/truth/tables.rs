@@ -1,6 +1,7 @@
 //! Coverage from tables: neighbours tile the light, and what differs lies within a cell of an edge.
 
 use glam::Vec3;
+use softshadow_native::depth_complexity::coverage::crossed_exactly;
 use softshadow_native::depth_complexity::edge::ProjectedEdge;
 use softshadow_native::depth_complexity::{Coverage, CoverageTables, Receiver, Seen};
 
@@ -109,4 +110,19 @@ fn edges_seen_end_on_wrap_by_signs() {
         worst = worst.max(mask[0].count_ones());
     }
     assert!(worst <= 3, "{worst} samples between two ends 2e-7 apart");
+}
+
+#[test]
+fn what_lies_behind_the_reference_point_is_never_crossed() {
+    // An edge ahead of c, with a line that rounding has put on c's other side: seen from it a sample behind c lies beyond.
+    let ends = [Vec3::new(1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0)];
+    let right = ProjectedEdge::from_images(ends, ends[1] - ends[0]);
+    let rounded = ProjectedEdge { line: Vec3::new(right.line.x, right.line.y, 1e-9), ..right };
+    assert!(right.line.z < 0.0 && !right.has_reference_left);
+    let (ahead, behind) = ([[1.5, 0.1]], [[-0.5, 0.1]]);
+    let directions = right.directions().unwrap();
+    assert_eq!(crossed_exactly::<1>(&right, directions, &ahead), [1]);
+    for image in [right, rounded] {
+        assert_eq!(crossed_exactly::<1>(&image, directions, &behind), [0]);
+    }
 }
