@@ -34,6 +34,7 @@ struct ListCounts {
 }
 
 // The lists: for each part of a tile that has edges, the part and its first chunk; then, from `first_chunk_word` on, chunks.
+//
 // A list grows by chunks: the next chunk, how many edges stand in this one, and the edges.
 const CHUNK: u32 = 32u;
 const CHUNK_EDGES: u32 = 30u;

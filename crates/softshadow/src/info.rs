@@ -27,6 +27,8 @@ pub struct Info {
     pub silhouette_edges: u64,
     /// Triangles that the planes of lights cut.
     pub cut_triangles: usize,
+    /// Triangles that lie behind lights and were left out for them, added up over lights.
+    pub triangles_behind: usize,
     /// Wall time from plan to values in milliseconds.
     pub wall_ms: f64,
     /// Time by pass, where the device has a clock.

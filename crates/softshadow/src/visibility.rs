@@ -167,6 +167,7 @@ pub(crate) fn run(
         false => Vec::new(),
     };
     collector.result.info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
+    collector.result.info.triangles_behind = occluders.iter().map(|o| o.triangles_behind).sum();
     let program = VisibilityProgram {
         technique,
         scene: &contents,
@@ -291,6 +292,7 @@ impl<'a> Collector<'a> {
             area_receivers: 0,
             silhouette_edges: 0,
             cut_triangles: 0,
+            triangles_behind: 0,
             wall_ms: 0.0,
             pass_ms: Vec::new(),
             bytes: Vec::new(),

@@ -84,7 +84,7 @@ fn lights_within_the_scene_cut_it() {
     let light = lamp(rectangle(1.0, 1.0), [0.05, 0.03, 0.12]);
     let under = points(Random(7).points(4000, [-1.0, 1.0], [-1.0, 1.0], [-0.8, -0.1]));
     let (edges, differ, hidden) = against_rays(&scene, &[light], &under, 64);
-    assert!(edges.info.cut_triangles > 50 && hidden > 100_000);
+    assert!(edges.info.cut_triangles > 50 && edges.info.triangles_behind > 50 && hidden > 100_000);
     assert_eq!(differ, 0);
 }
 

@@ -199,7 +199,8 @@ impl<const W: usize> Folded<W> {
 
     /// What passes semi-opaque faces to each sample.
     fn passes(&self, samples: usize) -> Option<Vec<f32>> {
-        let of = |sample| (-f64::from(self.attenuation.value(sample)) / UNITS_PER_HALVING).exp2() as f32;
+        // Within rounding of an edge a sample may count a face as taken away: nothing passes more than all.
+        let of = |sample| (-f64::from(self.attenuation.value(sample).max(0)) / UNITS_PER_HALVING).exp2() as f32;
         (self.attenuation.nonzero() != [0; W]).then(|| (0..samples).map(of).collect())
     }
 
