@@ -172,7 +172,7 @@ fn shader(file: &str) -> &'static str {
     EMBEDDED.iter().find(|(name, _)| *name == file).unwrap_or_else(|| panic!("no file '{file}'")).1
 }
 
-/// Constants of `depth_complexity.rs`, each with what the kernels make of it.
+/// Constants of `depth_complexity`, each with what the kernels make of it.
 fn counted_by_kernels() -> [(&'static str, u64); 9] {
     let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/{file}.wgsl"), name).bytes);
     let value = |file: &str, name| constant(shader(&format!("depth_complexity/{file}.wgsl")), name).unwrap();
@@ -201,11 +201,11 @@ fn source(path: &str) -> String {
 
 #[test]
 fn what_depth_complexity_counts_is_what_its_kernels_count() {
-    let text = source("src/depth_complexity.rs");
+    let text = ["mod", "tiled", "values"].map(|name| source(&format!("src/depth_complexity/{name}.rs"))).concat();
     assert_eq!(contradicted(&text), Vec::<&str>::new());
     // Any of them one off, or gone, is named.
     for (name, value) in counted_by_kernels() {
-        let written = text.lines().find(|line| line.starts_with(&format!("const {name}: "))).unwrap();
+        let written = text.lines().find(|line| line.contains(&format!("const {name}: "))).unwrap();
         let (head, _) = written.split_once(" = ").unwrap();
         let spoilt = text.replace(written, &format!("{head} = {};", value + 1));
         assert_eq!(contradicted(&spoilt), [name]);
@@ -218,7 +218,7 @@ fn lists_of_edges_lie_as_plans_say() {
     // A list's head is two words for each of a tile's two parts; a chunk is the next one, a count, and edges.
     let tiles = shader("depth_complexity/tiles.wgsl");
     assert!(tiles.contains("return 4u * tile_count;"));
-    assert!(source("src/depth_complexity.rs").contains("u64::from(tile_count) * (16 + CHUNKS_PER_TILE * CHUNK_BYTES)"));
+    assert!(source("src/depth_complexity/tiled.rs").contains("u64::from(tile_count) * (16 + CHUNKS_PER_TILE * CHUNK_BYTES)"));
     let of = |name| constant(tiles, name).unwrap();
     assert_eq!(of("CHUNK"), of("CHUNK_EDGES") + 2);
     // A cluster, and a group of them, has a bit for each.

@@ -1,0 +1,45 @@
+//! The order in which tiles take receivers.
+
+use crate::request::{ReceiverSource, Request};
+
+/// Receivers of a block in the order of the tiles: pixels in squares of 8 × 8, points along a space-filling curve.
+pub(super) fn order(request: &Request<'_>) -> Vec<u32> {
+    let count = request.block.count;
+    match request.receivers {
+        ReceiverSource::Camera(camera) => {
+            let width = camera.size()[0] as usize;
+            let rows = count / width.max(1);
+            let mut order = Vec::with_capacity(count);
+            for (top, left) in (0..rows).step_by(8).flat_map(|top| (0..width).step_by(8).map(move |left| (top, left))) {
+                for row in top..(top + 8).min(rows) {
+                    order.extend((left..(left + 8).min(width)).map(|column| (row * width + column) as u32));
+                }
+            }
+            order
+        }
+        ReceiverSource::Points(points) => {
+            let frame = &request.scene.local.frame;
+            let block = request.block;
+            let positions: Vec<glam::DVec3> = points.positions()[block.first..block.first + count]
+                .iter()
+                .map(|p| frame.local_from_world(*p))
+                .collect();
+            let low = positions.iter().fold(glam::DVec3::INFINITY, |low, p| low.min(*p));
+            let high = positions.iter().fold(glam::DVec3::NEG_INFINITY, |high, p| high.max(*p));
+            let size = (high - low).max_element().max(f64::MIN_POSITIVE);
+            let mut keyed: Vec<(u64, u32)> =
+                (0..).zip(&positions).map(|(index, p)| (morton((*p - low) / size), index)).collect();
+            keyed.sort_unstable();
+            keyed.into_iter().map(|(_, index)| index).collect()
+        }
+    }
+}
+
+/// The place of a point of the unit cube on Morton's curve, 16 bits an axis.
+fn morton(p: glam::DVec3) -> u64 {
+    let spread = |x: f64| {
+        let bits = (x * 65_535.0) as u64;
+        (0..16).fold(0, |key, bit| key | (bits >> bit & 1) << (3 * bit))
+    };
+    spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
+}
