@@ -4,6 +4,9 @@
 // those that were not finished are counted.
 const LONGEST_WALK: u32 = 12000u;
 
+// A list that takes more steps than this is given up, and counted.
+const MOST_STEPS: u32 = 60000u;
+
 // How the steps are shared among the lanes of a vector is the driver's affair. So every kernel with long loops ends with one of this
 // many steps: where that is cut short, so may be what came before.
 const LAST_STEPS: u32 = 8u;

@@ -106,13 +106,13 @@ pub(crate) fn plan(request: &Request<'_>, settings: &DepthComplexity) -> Plan {
         .bind("order", order)
         .bind("slots", slots)
         .bind("blocked", blocked);
-    let reads = Reads { frame, samples, receivers, slots, blocked };
+    let reads = Reads { frame, receivers, slots, blocked };
     let occluders = request.occluders.filter(|occluders| occluders.edge_count > 0);
-    let areas = occluders.map(|occluders| tiled::append_fold(&mut plan, request, occluders, &reads));
+    let areas = occluders.and_then(|occluders| tiled::append_fold(&mut plan, request, settings, occluders, &reads));
 
     let decided = plan.buffer("decided samples", count as u64 * 4);
     plan.clear("all samples decided", "every mask speaks for all samples", decided);
-    let masks = Masks { blocked, decided, areas: areas.filter(|_| settings.exact_area) };
+    let masks = Masks { blocked, decided, areas };
     resolve::append(&mut plan, request, settings.samples, &light, receivers, masks);
     plan
 }
@@ -120,7 +120,6 @@ pub(crate) fn plan(request: &Request<'_>, settings: &DepthComplexity) -> Plan {
 /// What several passes read.
 struct Reads {
     frame: ResourceId,
-    samples: ResourceId,
     receivers: ResourceId,
     slots: ResourceId,
     blocked: ResourceId,
