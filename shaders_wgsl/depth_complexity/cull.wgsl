@@ -203,7 +203,12 @@ fn list_faces(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if (invocation.x >= slice.count) {
         return;
     }
-    let index = slice.first + invocation.x;
+    let item = slice.first + invocation.x;
+    let bundle_count = 2u * BUNDLES * cluster_range.tile_count;
+    let index = scattered(item / 64u, (bundle_count + 63u) / 64u) * 64u + item % 64u;
+    if (index >= bundle_count) {
+        return;
+    }
     let part = index / BUNDLES;
     first_faces[index] = 0u;
     if (parts[part].has_faces == 0u) {

@@ -6,6 +6,7 @@
 //#import shared/slice.wgsl
 //#import shared/receiver.wgsl
 //#import depth_complexity/edge.wgsl
+//#import depth_complexity/clusters.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/walk.wgsl
 
@@ -18,6 +19,7 @@
 @group(0) @binding(6) var<storage, read> lists: array<u32>;
 @group(0) @binding(7) var<storage, read_write> slots: array<Slot>;
 @group(0) @binding(8) var<storage, read_write> blocked: array<u32>;
+@group(0) @binding(10) var<uniform> cluster_range: ClusterRange;
 @group(0) @binding(9) var<storage, read_write> counts: ListCounts;
 
 // Rounding, with room to spare.
@@ -110,16 +112,22 @@ fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if (invocation.x >= slice.count) {
         return;
     }
-    let at = slice.first + invocation.x;
+    let item = slice.first + invocation.x;
+    let tile_count = cluster_range.tile_count;
+    let tile = scattered(item / TILE, tile_count);
+    let at = tile * TILE + item % TILE;
+    if (at >= cluster_range.receiver_count) {
+        return;
+    }
     let slot = slots[at];
-    let bundle = (2u * (at / TILE) + slot.part) * BUNDLES + (at % TILE) / BUNDLE;
+    let bundle = (2u * tile + slot.part) * BUNDLES + (at % TILE) / BUNDLE;
     var chunk = select(first_faces[bundle], 0u, slot.depth == NO_VIEW);
     if (chunk == 0u) {
         return;
     }
     let receiver = receivers[slot.receiver];
     let view = frame_view(light_frame, receiver.position);
-    let base = first_chunk_word((arrayLength(&first_faces) / BUNDLES) / 2u);
+    let base = first_chunk_word(tile_count);
     var depth = 0;
     var steps = 0u;
     while (chunk != 0u && steps < MOST_STEPS) {

@@ -15,6 +15,8 @@ pub const LIST_COUNTS: &str = "list counts";
 pub(super) const TILE: u32 = 64;
 /// Edges of a cluster, and clusters of a group.
 pub(super) const CLUSTER: u32 = 32;
+/// Strides in which a pass takes its groups.
+const STRIDES: u32 = 32;
 /// Bundles of a tile.
 const BUNDLES: u32 = 8;
 /// Bytes of the head of the lists of a part of a tile.
@@ -50,6 +52,11 @@ const FOLD_MOVING: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: 
 /// Bytes of the lists that one receiver takes, on average.
 pub(super) fn list_bytes_per_receiver() -> u64 {
     (2 * (PART_BYTES + HEAD_BYTES + u64::from(BUNDLES) * 4) + CHUNKS_PER_TILE * CHUNK_BYTES).div_ceil(u64::from(TILE))
+}
+
+/// Items of a pass that takes groups of 64 in strides.
+fn scattered(items: u32) -> u32 {
+    items.div_ceil(64).next_multiple_of(STRIDES) * 64
 }
 
 /// Tiles of a block.
@@ -98,7 +105,7 @@ pub(super) fn append_fold(
         .bind("parts", parts);
     let first_faces = plan.buffer("first faces", u64::from(2 * tile_count * BUNDLES) * 4);
     let why = "lists for every eight receivers the faces that can lie between them and one point of the light";
-    plan.compute("list faces", why, LIST_FACES, items(2 * tile_count * BUNDLES, 64))
+    plan.compute("list faces", why, LIST_FACES, items(scattered(2 * tile_count * BUNDLES), 64))
         .bind("light_frame", reads.frame)
         .bind("cluster_range", range)
         .bind("receivers", reads.receivers)
@@ -110,8 +117,9 @@ pub(super) fn append_fold(
         .bind("lists", lists)
         .bind("counts", counts);
     let why = "counts the layers over one point of the light";
-    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(request.block.count as u32, 4))
+    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(scattered(tile_count * TILE), 4))
         .bind("light_frame", reads.frame)
+        .bind("cluster_range", range)
         .bind("receivers", reads.receivers)
         .bind("faces", faces)
         .bind("edges", edges)
