@@ -77,8 +77,9 @@ impl DepthComplexity {
     }
 
     pub(crate) fn bytes_per_receiver(&self, channels: u64) -> u64 {
+        let area = if self.exact_area && channels == 1 { 4 } else { 0 };
         // Order, slot, mask, decided samples, area; its part of a tile; values and their errors.
-        4 + SLOT_BYTES + u64::from(self.words()) * 4 + 4 + 4 + tiled::list_bytes_per_receiver() + 8 * channels
+        4 + SLOT_BYTES + u64::from(self.words()) * 4 + 4 + area + tiled::list_bytes_per_receiver() + 8 * channels
     }
 
     fn words(&self) -> u32 {

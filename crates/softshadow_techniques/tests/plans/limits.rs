@@ -73,7 +73,7 @@ fn most_bound() -> (usize, BTreeSet<String>) {
 fn the_fullest_pass_fills_core_webgpu() {
     // The bits of every sample, its light and its material: nothing more fits a kernel that makes a picture. Depths are counted over
     // faces, their edges and their tree; folds have edges, their faces and lists, and write bits and areas.
-    let fullest = ["shade", "count reference depth", "fold edges"].map(str::to_owned);
+    let fullest = ["shade", "count reference depth", "list faces", "fold edges 0"].map(str::to_owned);
     assert_eq!(most_bound(), (8, BTreeSet::from(fullest)));
 }
 
