@@ -23,8 +23,8 @@ const BUNDLES: u32 = 8;
 const HEAD_BYTES: u64 = 40;
 /// Bytes of a chunk of a list of edges.
 const CHUNK_BYTES: u64 = 128;
-/// Chunks of lists that a tile gets on average: 1,920 edges.
-const CHUNKS_PER_TILE: u64 = 64;
+/// Chunks of lists that a tile and its bundles get on average, together: 3,840 edges and faces.
+const CHUNKS_PER_TILE: u64 = 128;
 /// Bytes of `ListCounts`.
 const COUNT_BYTES: u64 = 32;
 /// Bytes of `TilePart`.
