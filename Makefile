@@ -68,7 +68,7 @@ bench:
 evidence: setup
 	@if ! ldconfig -p | grep -q libusb-1.0; then \
 	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); $$sudo apt-get install -y -qq libusb-1.0-0 libgomp1 libx11-6; fi
-	$(BIN)/python -m pip install --quiet open3d mitsuba
+	$(BIN)/python -m pip install --quiet open3d mitsuba embreex
 	$(BIN)/python tests/evidence/run.py --output EVIDENCE.md
 
 clean:

@@ -2,7 +2,8 @@
 //!
 //! Models stand on a ground of 6 by 6 under a light of 1 by 1. All bounds are symmetric about the origin and 6 wide, the tallest model
 //! is 1 high: the library's local frame then only scales by a power of two, positions in world units are float32 numbers, and another
-//! renderer can be given exactly the same. `tests/evidence/scenes.py` places its models in the same way.
+//! renderer can be given exactly the same. `softshadow.bench.scenes` in Python places its models in the same
+//! way.
 
 use std::path::{Path, PathBuf};
 
