@@ -21,7 +21,7 @@ from rays64 import judge
 import softshadow as ss
 from softshadow.bench import peers
 from softshadow.bench.embree_open3d import Open3D
-from softshadow.bench.scenes import Measured, on_ground
+from softshadow.bench.scenes import Measured, find
 
 LARGEST_SHARE = 1e-5
 MARK = "<!-- speed against error -->"
@@ -74,7 +74,7 @@ def sections_of(report: Path) -> dict[str, list[str]]:
 
 def models() -> list[Measured]:
     """The meshes that are measured."""
-    return [on_ground("stanford-bunny.obj"), on_ground("teapot.obj")]
+    return [find("stanford-bunny.obj"), find("teapot.obj")]
 
 
 def ray_by_ray() -> tuple[list[str], bool]:

@@ -9,7 +9,7 @@ import softshadow as ss
 from conftest import CARD, FLOOR, SQUARE, camera_above, light_above
 from softshadow.bench import peers, rays
 from softshadow.bench.peers import Beside, Row
-from softshadow.bench.scenes import Measured, on_ground
+from softshadow.bench.scenes import Measured, find
 
 
 def row(tracer: str, samples: int, ms: float, rmse: float, ours: bool = False) -> Row:
@@ -17,7 +17,7 @@ def row(tracer: str, samples: int, ms: float, rmse: float, ours: bool = False) -
 
 
 def found(*rows: Row) -> Beside:
-    return Beside("card", (8, 8), 64, 9, 0.001, list(rows))
+    return Beside("card", (8, 8), 64, 9, 0.001, list(rows), [])
 
 
 def test_ratios_compare_each_at_its_fastest_for_an_error():
@@ -84,6 +84,28 @@ def test_others_get_the_same_receivers_and_samples(scene):
     assert "48 × 36" in said
 
 
+def test_lights_without_one_set_of_positions_are_refused(scene):
+    sun = ss.SunLight(azimuth=40, elevation=60)
+    model = Measured("card", scene, sun, camera_above(), np.empty((0, 3)), np.empty((0, 3)))
+    with pytest.raises(ss.SceneError, match="neither a sphere nor a sun"):
+        peers.beside(model, {}, peers.OURS, rounds=1, device="software")
+
+
+def test_shipped_scenes_are_found_with_all_their_triangles():
+    canopy = find("canopy", 16)
+    assert canopy.camera.size == (16, 16)
+    assert len(canopy.faces) == sum(len(mesh.faces) for mesh in canopy.scene.meshes) > 40_000
+    assert canopy.faces.max() == len(canopy.vertices) - 1
+
+
+def test_a_technique_that_refuses_a_scene_is_named_and_the_others_go_on():
+    techniques = [ss.DepthComplexity(samples=16), ss.RayTraced(samples=4)]
+    result = peers.beside(find("canopy", 48), {}, techniques, rounds=1, device="software")
+    assert [row.tracer for row in result.rows] == ["ray_traced"]
+    assert len(result.refused) == 1
+    assert result.refused[0].startswith("canopy, depth_complexity with 16 samples: ")
+
+
 def test_what_is_missing_is_named_and_counted(monkeypatch, capsys, tmp_path):
     monkeypatch.setenv("SOFTSHADOW_MESHES", str(tmp_path))
     monkeypatch.setattr(peers, "PEERS", {"Nobody": ("nobody", "Nobody", (16,))})
@@ -97,7 +119,7 @@ def test_what_is_missing_is_named_and_counted(monkeypatch, capsys, tmp_path):
 def test_models_stand_on_the_ground_in_float32(monkeypatch, tmp_path):
     (tmp_path / "box.obj").write_text("v 5 7 9\nv 7 7 9\nv 7 11 9\nv 5 11 10\nf 1 2 3\nf 1 3 4\n")
     monkeypatch.setenv("SOFTSHADOW_MESHES", str(tmp_path))
-    model = on_ground("box.obj", 8)
+    model = find("box.obj", 8)
     # The same numbers as in the tests of `softshadow-bench`.
     expected = [[-0.25, -0.5, -0.125], [0.25, -0.5, -0.125], [0.25, 0.5, -0.125], [-0.25, 0.5, 0.125]]
     assert (model.vertices[:4] == np.float32(expected)).all()

@@ -36,7 +36,7 @@ const PLACED: [(&str, &[Model]); 2] = [
     (
         "teapots",
         &[
-            Model { file: "teapot.obj", foot: [-0.9, 0.5], turned_deg: 20.0, height: 0.6 },
+            Model { file: "teapot.obj", foot: [-0.7, 0.4], turned_deg: 20.0, height: 0.6 },
             Model { file: "teapot.obj", foot: [0.8, 0.9], turned_deg: 130.0, height: 0.45 },
             Model { file: "cow.obj", foot: [0.2, -0.5], turned_deg: 70.0, height: 1.0 },
         ],

@@ -20,13 +20,14 @@ import numpy as np
 
 from softshadow.cli_values import parse_technique
 from softshadow.device import Device, quiet_driver
-from softshadow.errors import SoftShadowError
+from softshadow.errors import SceneError, SoftShadowError
 from softshadow.light_samples import light_points
+from softshadow.lights import SphereLight, SunLight
 from softshadow.techniques import DepthComplexity, RayTraced, Technique
 from softshadow.visibility import visibility
 
 from .rays import Points
-from .scenes import Measured, on_ground
+from .scenes import Measured, find
 
 LEVELS = (0.05, 0.02, 0.01, 0.005)
 """Root mean square errors in the penumbra at which the fastest of each are compared."""
@@ -72,13 +73,15 @@ class Beside:
     in_penumbra: int
     standard_error: float
     rows: list[Row]
+    refused: list[str]
+    """Techniques of ours that do not serve this model, each with its reason."""
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Prints the tables; the exit code is 1 where nothing could be compared."""
     quiet_driver()
     parser = argparse.ArgumentParser(prog="softshadow.bench.peers", description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--mesh", action="append", help="a file in SOFTSHADOW_MESHES; default stanford-bunny.obj")
+    parser.add_argument("--scene", action="append", help="canopy, bunny, teapots, ..., or a mesh such as cow.obj")
     parser.add_argument("--technique", action="append", type=parse_technique, help="instead of our usual list")
     parser.add_argument("--size", type=int, default=512, help="width and height in pixels")
     parser.add_argument("--rounds", type=int, default=7, help="turns after the warm-up")
@@ -86,13 +89,14 @@ def main(arguments: list[str] | None = None) -> int:
     chosen = parser.parse_args(arguments)
     tracers, skipped = installed()
     done = 0
-    for mesh in chosen.mesh or ["stanford-bunny.obj"]:
+    for name in chosen.scene or ["bunny"]:
         try:
-            model = on_ground(mesh, chosen.size)
+            model = find(name, chosen.size)
+            found = beside(model, tracers, chosen.technique or OURS, chosen.rounds, chosen.device)
         except SoftShadowError as error:
-            skipped.append(f"{mesh}: {error}")
+            skipped.append(f"{name}: {error}")
             continue
-        found = beside(model, tracers, chosen.technique or OURS, chosen.rounds, chosen.device)
+        skipped += found.refused
         print("\n".join([*lines(found), *ratio_lines(found)]))
         done += 1
     print(f"{len(skipped)} skipped" + "".join(f"\n- {reason}" for reason in skipped))
@@ -118,6 +122,8 @@ def beside(
     device: Device = "auto",
 ) -> Beside:
     """Everything on the same receivers, taking turns."""
+    if isinstance(model.light, SphereLight | SunLight):
+        raise SceneError(f"{model.name}: others get one set of positions, which neither a sphere nor a sun has")
     placed = visibility(model.scene, model.light, camera=model.camera, receivers=True, device=device)
     if placed.positions is None or placed.normals is None:
         raise AssertionError("receivers were asked for")
@@ -150,9 +156,15 @@ def beside(
         for samples in counts:
             targets = light_points(model.light, samples, scene=model.scene).positions.reshape(-1, 3).astype(np.float32)
             entered.append((Row(name, samples, ours=False), partial(tracer.visibility, origins, normals, targets)))
+    refused = []
     for turn in range(rounds + 1):
-        for row, run in entered:
-            values, ms = run()
+        for row, run in list(entered):
+            try:
+                values, ms = run()
+            except SoftShadowError as error:
+                refused.append(f"{model.name}, {row.tracer} with {row.samples} samples: {error}")
+                entered.remove((row, run))
+                continue
             row.rmse = float(np.sqrt(np.mean((values[penumbra] - truth[penumbra]) ** 2)))
             if turn:
                 row.times_ms.append(ms)
@@ -163,6 +175,7 @@ def beside(
         in_penumbra=int(penumbra.sum()),
         standard_error=float(np.sqrt(np.mean(standard_error[penumbra] ** 2))),
         rows=[row for row, _ in entered],
+        refused=refused,
     )
 
 
