@@ -249,6 +249,23 @@ fn lights_add_up_and_passes_average() {
 }
 
 #[test]
+fn probes_speak_for_the_light_of_all_samples() {
+    let scene = furnished();
+    let probing = Technique::RayTraced(RayTraced { probes: 16, ..RayTraced::default() });
+    for (name, light, _) in lamps() {
+        let of = |technique| picture(&scene, std::slice::from_ref(&light), &camera(), technique, Shading::Integrated);
+        let (all, probed) = (of(&rays(64)), of(&probing));
+        let channels = all.visibility.channels;
+        let value = |p: &Picture, pixel: usize| p.visibility.values[pixel * channels..][..channels].to_vec();
+        // Where probes agree but other samples do not, visibility differs, too.
+        let alike: Vec<usize> =
+            (0..all.linear.len()).filter(|&pixel| value(&all, pixel) == value(&probed, pixel)).collect();
+        assert!(alike.len() > 1500 && alike.iter().all(|&p| all.linear[p] == probed.linear[p]), "{name}");
+        assert!(alike.iter().any(|&p| value(&all, p)[0] == 0.0), "{name}: some are dark");
+    }
+}
+
+#[test]
 fn edges_and_rays_make_one_picture_of_the_same_samples() {
     for name in ["hall", "fork", "toruses"] {
         let (scene, light, camera) = shipped(name, [96, 72]);
