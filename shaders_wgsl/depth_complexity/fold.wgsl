@@ -7,6 +7,7 @@
 //#import depth_complexity/area.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/walk.wgsl
+//#import depth_complexity/sample_sets.wgsl
 
 @group(0) @binding(0) var<uniform> light_frame: LightFrame;
 @group(0) @binding(1) var<uniform> frame_samples: FrameSamples;
@@ -20,6 +21,8 @@
 @group(0) @binding(9) var<storage, read> lists: array<u32>;
 @group(0) @binding(11) var<storage, read_write> counts: ListCounts;
 @group(0) @binding(10) var<storage, read_write> areas: array<f32>;
+@group(0) @binding(12) var<uniform> sampling: Sampling;
+@group(0) @binding(13) var<uniform> sample_sets: SampleSets;
 
 struct Outline {
     corners: array<vec4<f32>, 64>,
@@ -151,16 +154,18 @@ fn task_of(group: vec3<u32>, groups: vec3<u32>, lane: u32) -> Task {
     return Task(at, group.z, lists[item + 1u], position < count && at < fold_settings.slot_count && mine);
 }
 
-fn finish(sums: Sums, view: FrameView, receiver: Receiver, task: Task, wants_area: bool) {
+// How many samples of the group have to be asked whether they lie below the receiver's horizon: none or all.
+fn crossed_by_horizon(view: FrameView, receiver: Receiver, count: u32) -> u32 {
+    return select(count, 0u, is_above_horizon(light_frame, receiver, horizon_slope(view, receiver)));
+}
+
+fn finish(sums: Sums, below: vec2<u32>, task: Task, wants_area: bool) {
     let slot = slots[task.slot];
-    let first = task.group * 64u;
-    let count = min(64u, light_frame.sample_count - first);
+    let count = min(64u, light_frame.sample_count - task.group * 64u);
     let all = existing(count);
     let words = (light_frame.sample_count + 31u) / 32u;
     let layered = counters_nonzero(sums.counters) & all;
-    let slope = horizon_slope(view, receiver);
-    let crossing = select(count, 0u, is_above_horizon(light_frame, receiver, slope));
-    let mask = layered | (below_horizon(view, slope, first, crossing) & all);
+    let mask = layered | (below & all);
     blocked[slot.receiver * words + 2u * task.group] = mask.x;
     if (count > 32u) {
         blocked[slot.receiver * words + 2u * task.group + 1u] = mask.y;
@@ -190,6 +195,10 @@ struct Crossing {
 // Bit `k` of a group where sample `first + k` lies beyond the edge in its sector.
 fn crossed(crossing: Crossing, view: FrameView, first: u32, k: u32) -> u32 {
     let s = placed_sample(light_frame, view, frame_samples.at[min(first + k, light_frame.sample_count - 1u)].xy);
+    return crossed_at(crossing, s, k);
+}
+
+fn crossed_at(crossing: Crossing, s: vec2<f32>, k: u32) -> u32 {
     let left_of_low = crossing.low.x * s.y - crossing.low.y * s.x >= 0.0;
     let left_of_high = crossing.high.x * s.y - crossing.high.y * s.x >= 0.0;
     let beyond = (crossing.line.x * s.x + crossing.line.y * s.y + crossing.line.z >= 0.0) != crossing.beyond_left;
@@ -259,7 +268,90 @@ fn fold(
         }
         chunk = lists[at];
     }
-    finish(sums, view, receiver, task, wants_area);
+    let crossing = crossed_by_horizon(view, receiver, count);
+    finish(sums, below_horizon(view, horizon_slope(view, receiver), first, crossing), task, wants_area);
+    if (chunk != 0u || !has_steps_left()) {
+        atomicAdd(&counts.unfinished, 1u);
+    }
+}
+
+// The same where receivers have sets of their own: another entry, because what is read at one place for all 64 receivers of a group is
+// faster.
+
+fn sample_of_set(view: FrameView, at: u32) -> vec2<f32> {
+    return placed_sample(light_frame, view, of_pair(sample_sets.pairs[at >> 1u], at));
+}
+
+fn below_horizon_of_set(view: FrameView, slope: vec3<f32>, first: u32, count: u32) -> vec2<u32> {
+    var mask = vec2<u32>(0u);
+    for (var k = 0u; k < count; k++) {
+        let s = sample_of_set(view, first + k);
+        let below = select(0u, 1u << (k & 31u), slope.z + slope.x * s.x + slope.y * s.y <= 0.0);
+        mask |= select(vec2<u32>(below, 0u), vec2<u32>(0u, below), k >= 32u);
+    }
+    return mask;
+}
+
+fn crossed_in_set(crossing: Crossing, view: FrameView, first: u32, last: u32, k: u32) -> u32 {
+    return crossed_at(crossing, sample_of_set(view, min(first + k, last)), k);
+}
+
+fn crossed_of_set(view: FrameView, image: EdgeImage, first: u32, count: u32) -> vec2<u32> {
+    let low = low_direction(image);
+    let high = high_direction(image);
+    let c = Crossing(low, high, image.line, image.left, line_left(image, low, high));
+    let last = first + count - 1u;
+    var mask = vec2<u32>(0u);
+    for (var k = 0u; k < count; k += 8u) {
+        let found = crossed_in_set(c, view, first, last, k) | crossed_in_set(c, view, first, last, k + 1u)
+            | crossed_in_set(c, view, first, last, k + 2u) | crossed_in_set(c, view, first, last, k + 3u)
+            | crossed_in_set(c, view, first, last, k + 4u) | crossed_in_set(c, view, first, last, k + 5u)
+            | crossed_in_set(c, view, first, last, k + 6u) | crossed_in_set(c, view, first, last, k + 7u);
+        mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), k >= 32u);
+    }
+    return mask;
+}
+
+@compute @workgroup_size(64)
+fn fold_sets(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
+    }
+    let index = slots[task.slot].receiver;
+    let receiver = receivers[index];
+    let view = frame_view(light_frame, receiver.position);
+    let slope = horizon_slope(view, receiver);
+    let wants_area = fold_settings.wants_area != 0u && task.group == 0u && is_above_horizon(light_frame, receiver, slope);
+    let first = first_sample(sampling, index) + task.group * 64u;
+    let count = min(64u, light_frame.sample_count - task.group * 64u);
+    var sums = begin_fold(slots[task.slot].depth);
+    let base = first_chunk_word(fold_settings.tile_count);
+    var chunk = task.chunk;
+    var steps = 0u;
+    while (chunk != 0u && steps < MOST_STEPS) {
+        let at = base + chunk * CHUNK;
+        let end = lists[at + 1u];
+        for (var k = 0u; k < end; k++) {
+            steps++;
+            let edge = edges[lists[at + 2u + k]];
+            let image = before_limit(view, edge, edge_image(view, edge));
+            if (image_matters(light_frame, image)) {
+                let change = weight(view, edge, receiver.triangle) * select(1, -1, image.left);
+                steps += edge.incidence_count;
+                if (change != 0) {
+                    steps += count / 8u + 1u + light_frame.outline_count;
+                    sums = folded(sums, image, change, crossed_of_set(view, image, first, count), wants_area);
+                }
+            }
+        }
+        chunk = lists[at];
+    }
+    finish(sums, below_horizon_of_set(view, slope, first, crossed_by_horizon(view, receiver, count)), task, wants_area);
     if (chunk != 0u || !has_steps_left()) {
         atomicAdd(&counts.unfinished, 1u);
     }

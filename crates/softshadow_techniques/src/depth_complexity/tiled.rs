@@ -35,6 +35,7 @@ const BOUND_TILES: Kernel = Kernel { file: "depth_complexity/bound_tiles.wgsl", 
 const CULL: Kernel = Kernel { file: "depth_complexity/cull.wgsl", entry: "cull" };
 const SIZE_FOLD: Kernel = Kernel { file: "depth_complexity/size_fold.wgsl", entry: "size_fold" };
 const FOLD: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold" };
+const FOLD_SETS: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_sets" };
 
 /// Bytes of the lists that one receiver takes, on average.
 pub(super) fn list_bytes_per_receiver() -> u64 {
@@ -122,10 +123,9 @@ pub(super) fn append_fold(
     let settings = plan.parameter("fold settings", size_of::<FoldSettings>() as u64);
     let outline = plan.parameter("light outline", MOST_CORNERS as u64 * 16);
     let why = "adds up what changes at each edge, for 64 samples at a time, and the area beyond it";
-    plan.compute("fold edges", why, FOLD, Over::Indirect(size))
-        .bind("light_frame", reads.frame)
-        .bind("frame_samples", reads.samples)
-        .bind("fold_settings", settings)
+    let pass = plan.compute("fold edges", why, reads.samples.kernel(FOLD, FOLD_SETS), Over::Indirect(size));
+    reads.samples.bind(pass.bind("light_frame", reads.frame));
+    pass.bind("fold_settings", settings)
         .bind("outline", outline)
         .bind("receivers", reads.receivers)
         .bind("edges", edges)

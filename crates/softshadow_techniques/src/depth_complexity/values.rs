@@ -1,18 +1,20 @@
 //! The parameters of the plans: what changes from light to light and pass to pass.
 
 use softshadow_plan::Values;
-use softshadow_scene::{Light, LightFrame, LightKind, LightSamples, Outline, pass_seed};
+use softshadow_scene::{Light, LightFrame, LightKind, Outline, SampleSpread};
 
 use super::DepthComplexity;
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
 use crate::TechniqueError;
-use crate::parts::light_buffers::{self, SampleSet, Sampling};
-use crate::parts::{receivers, shading};
+use crate::parts::light_buffers::{self, Sampling};
+use crate::parts::{interleaving, receivers, shading};
 use crate::request::Request;
 
 /// Samples of one set at most: as many as one uniform holds.
 pub(super) const MOST_SAMPLES: u32 = 256;
+/// Samples of all sets at most, where there are several: as many as the largest uniform holds, two a row.
+pub(super) const SET_SAMPLES: u32 = 8192;
 /// Corners of a polygon light at most.
 pub(super) const MOST_CORNERS: usize = 64;
 /// An area is not believed when it differs from the samples' share by more than this over `samples^(3/4)`: twice the largest error seen
@@ -70,17 +72,11 @@ pub(crate) fn values(
 ) -> Result<Values, TechniqueError> {
     let mut values = Values::new();
     receivers::values(request, &mut values);
-    let set = SampleSet { pattern: settings.pattern, count: settings.samples, seed: pass_seed(settings.seed, pass) };
-    light_buffers::values(request, light, set, &mut values)?;
-    let sampling = Sampling {
-        count: settings.samples,
-        words: settings.words(),
-        probes: settings.samples,
-        pass_index: pass,
-        passes: settings.passes,
-        ..Sampling::default()
-    };
-    values.insert("sampling".into(), bytemuck::bytes_of(&sampling).to_vec());
+    let sampling = settings.sampling(pass);
+    let samples = light_buffers::values(request, light, &sampling, &mut values)?;
+    interleaving::values(request, &sampling, &mut values);
+    let record = Sampling::new(request, &sampling, pass, settings.passes);
+    values.insert("sampling".into(), bytemuck::bytes_of(&record).to_vec());
 
     let local = &request.scene.local.frame;
     let frame = LightFrame::new(light, local);
@@ -98,8 +94,14 @@ pub(crate) fn values(
         bytemuck::cast_slice(&rows).to_vec()
     };
     values.insert("light outline".into(), padded(&corners, MOST_CORNERS));
-    let samples = LightSamples::new(light, local, set.pattern, set.count, set.seed)?;
-    values.insert("frame samples".into(), padded(&frame.samples(light, &samples), MOST_SAMPLES as usize));
+    let mut placed = frame.samples(light, &samples);
+    match settings.spread {
+        SampleSpread::Correlated => values.insert("frame samples".into(), padded(&placed, MOST_SAMPLES as usize)),
+        SampleSpread::Decorrelated | SampleSpread::Interleaved => {
+            placed.resize(SET_SAMPLES as usize, [0.0; 2]);
+            values.insert("sample sets".into(), bytemuck::cast_slice(&placed).to_vec())
+        }
+    };
 
     let (tile_count, receiver_count) = (tiles(request), request.block.count as u32);
     let edge_count = request.occluders.map_or(0, |o| o.edge_count);

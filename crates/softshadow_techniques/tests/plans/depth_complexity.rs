@@ -111,7 +111,7 @@ fn samples_fill_their_place_and_no_more() {
         assert_eq!((rows.len(), set), (4 * 256, samples as usize));
         assert!(!rows.chunks_exact(4).skip(set).any(is_set));
         let sampling = words(&values["sampling"]);
-        assert_eq!(sampling, [samples, samples.div_ceil(32), samples, 0, 1, 0, 0, 0]);
+        assert_eq!(sampling, [samples, samples.div_ceil(32), samples, 0, 1, 1, 0, 0]);
         assert_eq!(words(&values["light frame"])[19], samples);
         bounds.push(f32::from_bits(words(&values["fold settings"])[2]));
     }
