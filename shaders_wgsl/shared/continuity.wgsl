@@ -11,8 +11,9 @@ struct Interleaving {
     reserved: u32,
 }
 
-// Normals are those of triangles: 26 degrees are a step of a round body of 14 facets, and far from the corner of a box.
-const LEAST_COSINE: f32 = 0.9;
+// Eight degrees between two facets: a round body of 45 of them. Normals are those of triangles, so every facet has a horizon of its own
+// and cuts the light elsewhere; what is averaged over coarser ones is no longer what either sees.
+const LEAST_COSINE: f32 = 0.99;
 
 // A neighbour may lie off the receiver's plane by this share of the way on that plane from pixel to pixel. Both grow with the pixels alone:
 // no length is built in. Half a way tells sheets apart down to half a pixel's size between them, at any slope.

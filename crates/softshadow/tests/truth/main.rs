@@ -16,6 +16,7 @@ mod coverage;
 mod depth_complexity;
 mod filtered;
 mod hard_shadows;
+mod interleaved;
 mod invariance;
 mod lights;
 mod pixels;
