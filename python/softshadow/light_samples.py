@@ -26,8 +26,8 @@ class LightPoints:
         World coordinates; directions towards the light where `at_infinity`; NaN from inside a sphere. One array a
         receiver for a sphere, and where receivers do not share their samples.
     parameters : float32, (samples, 2), or one such array a receiver
-        One a receiver only where receivers do not share their samples. Place on the light: [-1, 1]² on a rectangle, the unit disc on disc, sphere and sun, light-local world
-        units on a polygon.
+        Place on the light: [-1, 1]² on a rectangle, the unit disc on disc, sphere and sun, light-local world
+        units on a polygon. One array a receiver only where receivers do not share their samples.
     at_infinity : bool
         True for a sun.
     """

@@ -12,12 +12,13 @@
 //! together are one stratified set, and the shares of pixels side by side are averaged where they see one surface.
 //!
 //! **When it is wrong.** A share of n samples is off by about 0.016 at 64 stratified samples along a straight edge; more samples or passes
-//! help. Interleaved shares are those of a neighbourhood: they are blurred by half of `tile`, which no number of passes undoes. `probes` can miss an
-//! occluder that hides less than one probe's share of the light and no neighbour's. A ray within rounding of an edge may fall to
-//! either side, but never between two triangles that share one.
+//! help. Interleaved shares are those of a neighbourhood: they are blurred by half of `tile`, which no number of passes undoes, and err more
+//! than one set where penumbrae are only that wide. `probes` can miss an occluder that hides less than one probe's share of the light and
+//! no neighbour's. A ray within rounding of an edge may fall to either side, but never between two triangles that share one.
 //!
 //! **Sources.** Determinant test with shared edges: Davidovič, Engelhardt, Georgiev, Slusallek, Dachsbacher 2012, section 4.
-//! Hierarchy without stack: Smits 1998. The interval of a bundle of rays: Wald, Ize, Kensler, Knoll, Parker 2006.
+//! Hierarchy without stack: Smits 1998. The interval of a bundle of rays: Wald, Ize, Kensler, Knoll, Parker 2006. Interleaved samples:
+//! Keller and Heidrich 2001.
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Kernel, Over, Plan, ResourceId, Values};

@@ -17,8 +17,8 @@
 //! **When it is wrong.** Areas are wrong where layers overlap between the samples (the first 64 of them say whether; at most by the
 //! sampler's own error). They answer for rectangles, discs, polygons of up to 64 corners and suns up to half a degree; not for spheres and
 //! wider suns, whose measure is solid angle, and for no light of a call in which any has a texture. Samples are off as for `ray_traced`, and
-//! averages of interleaved ones leave what areas answered alone. Foliage has no surface to take silhouettes of: every leaf's border is an edge, lists grow long, and the call ends
-//! with an error that names `ray_traced`. Triangles that touch a sphere light are refused.
+//! averages of interleaved ones leave what areas answered alone. Foliage has no surface to take silhouettes of: every leaf's border is an
+//! edge, lists grow long, and the call ends with an error that names `ray_traced`. Triangles that touch a sphere light are refused.
 
 mod order;
 mod tiled;
