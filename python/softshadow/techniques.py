@@ -63,7 +63,8 @@ class RayTraced(Technique):
         Who shares samples. Correlated: all receivers have one set, and penumbrae show its steps. Decorrelated: every
         receiver takes one of many stratified sets, and steps become noise. Interleaved, for cameras: the pixels of a
         square have sets that together are one stratified set, and pixels side by side are averaged where they see one
-        surface; less noise for the same samples, and shadows blurred by half of `tile`.
+        surface; less noise for the same samples, and shadows blurred by half of `tile`, of which
+        the standard error knows nothing.
     tile : int
         Side of that square, 2 to 8.
 
