@@ -1,4 +1,5 @@
-//! Averages of interleaved samples: of one surface alone, with smaller errors than as many samples of one set, and of light as of visibility.
+//! Averages of interleaved samples: of one surface alone, with smaller errors than as many samples of one set, of light as of
+//! visibility.
 
 use softshadow::{
     Camera, DepthComplexity, Error, Light, Material, Mesh, Options, Picture, PictureOptions, RayTraced, Receivers,

@@ -11,8 +11,8 @@
 //! silhouettes in the shaft between it and the light. And where the counters show a single depth, the *area* beyond the edges answers,
 //! without sampling noise.
 //!
-//! **Parameters.** `samples` a pass, up to 256; `pattern`, `seed`, `passes`, `spread`, `tile` as for `ray_traced`, with the same sets for the
-//! same receivers, but interleaved sets of at most 8,192 samples together; `exact_area`.
+//! **Parameters.** `samples` a pass, up to 256; `pattern`, `seed`, `passes`, `spread`, `tile` as for `ray_traced`, with the same sets for
+//! the same receivers, but interleaved sets of at most 8,192 samples together; `exact_area`.
 //!
 //! **When it is wrong.** Areas are wrong where layers overlap between the samples (the first 64 of them say whether; at most by the
 //! sampler's own error). They answer for rectangles, discs, polygons of up to 64 corners and suns up to half a degree; not for spheres and
