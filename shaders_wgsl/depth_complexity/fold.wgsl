@@ -1,7 +1,7 @@
 // Folds the silhouette edges of a part of a tile into the counters of its receivers, 64 samples at a time: D(s) is D(c) less what
 // changes at every edge on the way. Where a single depth hides the light, the area beyond the edges answers instead of the samples.
 //#import shared/receiver.wgsl
-//#import depth_complexity/edge.wgsl
+//#import depth_complexity/crossing.wgsl
 //#import depth_complexity/horizon.wgsl
 //#import depth_complexity/counters.wgsl
 //#import depth_complexity/area.wgsl
@@ -178,29 +178,15 @@ fn finish(sums: Sums, view: FrameView, receiver: Receiver, task: Task, wants_are
     }
 }
 
-// What decides whether the way to a sample crosses an edge.
-struct Crossing {
-    low: vec2<f32>,
-    high: vec2<f32>,
-    line: vec3<f32>,
-    left: bool,
-    beyond_left: bool,
-}
-
 // Bit `k` of a group where sample `first + k` lies beyond the edge in its sector.
 fn crossed(crossing: Crossing, view: FrameView, first: u32, k: u32) -> u32 {
     let s = placed_sample(light_frame, view, frame_samples.at[min(first + k, light_frame.sample_count - 1u)].xy);
-    let left_of_low = crossing.low.x * s.y - crossing.low.y * s.x >= 0.0;
-    let left_of_high = crossing.high.x * s.y - crossing.high.y * s.x >= 0.0;
-    let beyond = (crossing.line.x * s.x + crossing.line.y * s.y + crossing.line.z >= 0.0) != crossing.beyond_left;
-    return select(0u, 1u << (k & 31u), left_of_low != left_of_high && left_of_low == crossing.left && beyond);
+    return select(0u, 1u << (k & 31u), crosses(crossing, s));
 }
 
 // 64 samples, eight at a step: drivers on the CPU count steps.
 fn crossed_exactly(view: FrameView, image: EdgeImage, first: u32, count: u32) -> vec2<u32> {
-    let low = low_direction(image);
-    let high = high_direction(image);
-    let c = Crossing(low, high, image.line, image.left, line_left(image, low, high));
+    let c = crossing_of(image);
     var mask = vec2<u32>(0u);
     for (var k = 0u; k < count; k += 8u) {
         let found = crossed(c, view, first, k) | crossed(c, view, first, k + 1u) | crossed(c, view, first, k + 2u)

@@ -11,7 +11,7 @@ pub mod ray_traced;
 mod request;
 
 use serde::{Deserialize, Serialize};
-use softshadow_plan::{Plan, Values};
+use softshadow_plan::{Host, Plan, Values};
 use softshadow_scene::{Light, SceneError};
 
 pub use block::{Block, blocks};
@@ -92,6 +92,26 @@ impl Technique {
             Self::RayTraced(settings) => settings.check(),
             Self::HardShadowMap(settings) => settings.check(),
             Self::DepthComplexity(settings) => settings.check(),
+        }
+    }
+
+    /// Checks whether the settings can serve such receivers on such a host.
+    ///
+    /// # Errors
+    /// [`TechniqueError::Setting`] names the setting, and one that can.
+    pub fn check_call(&self, receivers: ReceiverSource<'_>, host: &Host) -> Result<(), TechniqueError> {
+        match self {
+            Self::DepthComplexity(settings) => settings.check_call(receivers, host),
+            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+        }
+    }
+
+    /// Stages that one pass takes: more than one where a stage is chosen by what the one before found.
+    #[must_use]
+    pub fn stages(&self) -> u32 {
+        match self {
+            Self::DepthComplexity(settings) => settings.stages(),
+            Self::RayTraced(_) | Self::HardShadowMap(_) => 1,
         }
     }
 

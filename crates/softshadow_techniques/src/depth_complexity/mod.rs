@@ -18,103 +18,73 @@
 //! wider suns, whose measure is solid angle, and for no light of a call in which any has a texture. Samples are off as for `ray_traced`. Foliage has no surface to take silhouettes of: every leaf's border is an edge, lists grow long, and the call ends
 //! with an error that names `ray_traced`. Triangles that touch a sphere light are refused.
 
+pub mod blended;
 mod order;
+mod settings;
 mod tiled;
 mod values;
 
-use serde::{Deserialize, Serialize};
-use softshadow_plan::{Kernel, Over, Plan, ResourceId};
-use softshadow_scene::SamplePattern;
+use softshadow_plan::{Kernel, Origin, Over, Plan, ResourceId, Shape};
 
-use crate::TechniqueError;
-use crate::parts::pattern_name;
 use crate::parts::resolve::{BLOCKED, Masks};
 use crate::parts::{light_buffers, receivers, resolve};
-use crate::request::Request;
+use crate::request::{ReceiverSource, Request};
+pub use settings::{Counters, DepthComplexity, Evaluation};
 pub use tiled::LIST_COUNTS;
 use tiled::{SLOT_BYTES, TILE, tiles};
 use values::MOST_SAMPLES;
 pub(crate) use values::values;
 pub use values::{ClusterRange, FoldSettings, FrameRecord};
 
-/// Settings of `depth_complexity`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct DepthComplexity {
-    /// Light samples of one pass, 1 to 256.
-    pub samples: u32,
-    /// How they are spread.
-    #[serde(with = "pattern_name")]
-    pub pattern: SamplePattern,
-    /// Which set of them.
-    pub seed: u32,
-    /// Progressive passes.
-    pub passes: u32,
-    /// Whether the light's visible area answers where a single layer hides it.
-    pub exact_area: bool,
-}
-
-impl Default for DepthComplexity {
-    fn default() -> Self {
-        Self { samples: 64, pattern: SamplePattern::Stratified, seed: 0, passes: 1, exact_area: true }
-    }
-}
-
 const OPEN_MASKS: Kernel = Kernel { file: "depth_complexity/open_masks.wgsl", entry: "open_masks" };
-
-impl DepthComplexity {
-    pub(crate) fn check(&self) -> Result<(), TechniqueError> {
-        let fail =
-            |setting, reason: String| Err(TechniqueError::Setting { technique: "depth_complexity", setting, reason });
-        if self.samples == 0 || self.samples > MOST_SAMPLES {
-            let reason = format!("must lie between 1 and {MOST_SAMPLES}, got {}; more come as passes", self.samples);
-            return fail("samples", reason);
-        }
-        if self.passes == 0 {
-            return fail("passes", "must be at least 1".into());
-        }
-        Ok(())
-    }
-
-    pub(crate) fn bytes_per_receiver(&self, channels: u64) -> u64 {
-        // Order, slot, mask, decided samples, area; its part of a tile; values and their errors.
-        4 + SLOT_BYTES + u64::from(self.words()) * 4 + 4 + 4 + tiled::list_bytes_per_receiver() + 8 * channels
-    }
-
-    fn words(&self) -> u32 {
-        self.samples.div_ceil(32)
-    }
-}
 
 /// Depth of the reference point for every receiver; lists of edges for every tile; counters folded over them.
 pub(crate) fn plan(request: &Request<'_>, settings: &DepthComplexity) -> Plan {
+    // `check_call` refuses wedges for points: they have no image to be drawn on.
+    if let (Evaluation::Blended, ReceiverSource::Camera(camera)) = (settings.evaluation, request.receivers) {
+        return blended::plan(request, settings, camera.size());
+    }
     let mut plan = Plan::new("depth complexity");
     let count = request.block.count;
     let receivers = receivers::append(&mut plan, request);
     let light = light_buffers::append(&mut plan, settings.samples);
+    let reads = append_masks(&mut plan, request, settings, receivers, Origin::Transient);
+    let occluders = request.occluders.filter(|occluders| occluders.edge_count > 0);
+    let areas = occluders.map(|occluders| tiled::append_fold(&mut plan, request, occluders, &reads));
+
+    let decided = plan.buffer("decided samples", count as u64 * 4);
+    plan.clear("all samples decided", "every mask speaks for all samples", decided);
+    let masks = Masks { blocked: reads.blocked, decided, areas: areas.filter(|_| settings.exact_area) };
+    resolve::append(&mut plan, request, settings.samples, &light, receivers, masks);
+    plan
+}
+
+/// The pass that opens the masks; slots and masks live as long as `origin` says.
+fn append_masks(
+    plan: &mut Plan,
+    request: &Request<'_>,
+    settings: &DepthComplexity,
+    receivers: ResourceId,
+    origin: Origin,
+) -> Reads {
+    let count = request.block.count;
     let frame = plan.parameter("light frame", size_of::<FrameRecord>() as u64);
     let samples = plan.parameter("frame samples", u64::from(MOST_SAMPLES) * 16);
     let order = plan.parameter("receiver order", count as u64 * 4);
-    let slots = plan.buffer("slots", u64::from(tiles(request) * TILE) * SLOT_BYTES);
-    let blocked = plan.buffer(BLOCKED, count as u64 * u64::from(settings.words()) * 4);
-    let items = |n: u32, work_per_item: u32| Over::Items { count: n, work_per_item };
+    let slot_bytes = u64::from(tiles(request) * TILE) * SLOT_BYTES;
+    let slots = plan.resource("slots", Shape::Buffer { bytes: slot_bytes }, origin);
+    let mask_bytes = count as u64 * u64::from(settings.words()) * 4;
+    let blocked = plan.resource(BLOCKED, Shape::Buffer { bytes: mask_bytes }, origin);
+    let over = Over::Items { count: count as u32, work_per_item: settings.words() };
     let why = "blocks what lies below the horizon or behind the light";
-    plan.compute("open masks", why, OPEN_MASKS, items(count as u32, settings.words()))
+    plan.compute("open masks", why, OPEN_MASKS, over)
         .bind("light_frame", frame)
         .bind("frame_samples", samples)
         .bind("receivers", receivers)
         .bind("order", order)
         .bind("slots", slots)
         .bind("blocked", blocked);
-    let reads = Reads { frame, samples, receivers, slots, blocked };
-    let occluders = request.occluders.filter(|occluders| occluders.edge_count > 0);
-    let areas = occluders.map(|occluders| tiled::append_fold(&mut plan, request, occluders, &reads));
-
-    let decided = plan.buffer("decided samples", count as u64 * 4);
-    plan.clear("all samples decided", "every mask speaks for all samples", decided);
-    let masks = Masks { blocked, decided, areas: areas.filter(|_| settings.exact_area) };
-    resolve::append(&mut plan, request, settings.samples, &light, receivers, masks);
-    plan
+    Reads { frame, samples, receivers, slots, blocked }
 }
 
 /// What several passes read.

@@ -19,13 +19,13 @@ const CHUNK_BYTES: u64 = 128;
 /// Chunks of lists that a tile gets on average: 1,920 edges.
 const CHUNKS_PER_TILE: u64 = 64;
 /// Bytes of `ListCounts`.
-const COUNT_BYTES: u64 = 32;
+pub(super) const COUNT_BYTES: u64 = 32;
 /// Bytes of `TilePart`.
-const PART_BYTES: u64 = 112;
+pub(super) const PART_BYTES: u64 = 112;
 /// Bytes of `Slot`.
 pub(super) const SLOT_BYTES: u64 = 16;
 /// Bytes of `Cluster`.
-const CLUSTER_BYTES: u64 = 32;
+pub(super) const CLUSTER_BYTES: u64 = 32;
 
 const SILHOUETTES: Kernel = Kernel { file: "depth_complexity/silhouettes.wgsl", entry: "silhouettes" };
 const BOUND_CLUSTERS: Kernel = Kernel { file: "depth_complexity/bound_clusters.wgsl", entry: "bound_clusters" };
@@ -68,37 +68,8 @@ pub(super) fn append_fold(
     let counts = plan.buffer("running counts", COUNT_BYTES);
     plan.clear("no counts", "nothing is counted yet", counts);
     let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
-
-    let why = "bounds the receivers of each tile, and the shaft between them and the light";
-    plan.compute("bound tiles", why, BOUND_TILES, items(tile_count, 64))
-        .bind("light_frame", reads.frame)
-        .bind("cluster_range", range)
-        .bind("receivers", reads.receivers)
-        .bind("slots", reads.slots)
-        .bind("parts", parts)
-        .bind("areas", areas);
-    let why = "finds the tiles with any face between them and the light";
-    plan.compute("find faces", why, FIND_FACES, items(2 * tile_count, 64))
-        .bind("face_tree", face_tree)
-        .bind("parts", parts);
-    let why = "counts the layers over one point of the light";
-    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(request.block.count as u32, 4))
-        .bind("light_frame", reads.frame)
-        .bind("receivers", reads.receivers)
-        .bind("faces", faces)
-        .bind("edges", edges)
-        .bind("face_tree", face_tree)
-        .bind("parts", parts)
-        .bind("slots", reads.slots)
-        .bind("blocked", reads.blocked)
-        .bind("counts", counts);
-    let why = "finds the edges that can be silhouettes over any part of the light";
-    plan.compute("find silhouettes", why, SILHOUETTES, items(cluster_count, 16))
-        .bind("light_frame", reads.frame)
-        .bind("cluster_range", range)
-        .bind("edges", edges)
-        .bind("incident_faces", incident_faces)
-        .bind("clusters", clusters);
+    let stock = Stock { faces, face_tree, edges, incident_faces, range, clusters, parts, areas, counts };
+    append_depths(plan, request, reads, &stock, cluster_count);
     let why = "bounds 32 clusters of edges at a time";
     plan.compute("bound clusters", why, BOUND_CLUSTERS, items(clusters_in(cluster_count), 8))
         .bind("cluster_range", range)
@@ -140,4 +111,53 @@ pub(super) fn append_fold(
     plan.copy("report counts", why, [counts, report], COUNT_BYTES);
     plan.outputs.push(report);
     areas
+}
+
+/// What hides a light, and what the passes before any edge is drawn or listed leave.
+pub(super) struct Stock {
+    pub(super) faces: ResourceId,
+    pub(super) face_tree: ResourceId,
+    pub(super) edges: ResourceId,
+    pub(super) incident_faces: ResourceId,
+    pub(super) range: ResourceId,
+    pub(super) clusters: ResourceId,
+    pub(super) parts: ResourceId,
+    pub(super) areas: ResourceId,
+    pub(super) counts: ResourceId,
+}
+
+/// Counts the layers over the reference point for every receiver, and finds the edges that can be silhouettes at all.
+pub(super) fn append_depths(plan: &mut Plan, request: &Request<'_>, reads: &Reads, stock: &Stock, cluster_count: u32) {
+    let tile_count = tiles(request);
+    let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
+    let why = "bounds the receivers of each tile, and the shaft between them and the light";
+    plan.compute("bound tiles", why, BOUND_TILES, items(tile_count, 64))
+        .bind("light_frame", reads.frame)
+        .bind("cluster_range", stock.range)
+        .bind("receivers", reads.receivers)
+        .bind("slots", reads.slots)
+        .bind("parts", stock.parts)
+        .bind("areas", stock.areas);
+    let why = "finds the tiles with any face between them and the light";
+    plan.compute("find faces", why, FIND_FACES, items(2 * tile_count, 64))
+        .bind("face_tree", stock.face_tree)
+        .bind("parts", stock.parts);
+    let why = "counts the layers over one point of the light";
+    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(request.block.count as u32, 4))
+        .bind("light_frame", reads.frame)
+        .bind("receivers", reads.receivers)
+        .bind("faces", stock.faces)
+        .bind("edges", stock.edges)
+        .bind("face_tree", stock.face_tree)
+        .bind("parts", stock.parts)
+        .bind("slots", reads.slots)
+        .bind("blocked", reads.blocked)
+        .bind("counts", stock.counts);
+    let why = "finds the edges that can be silhouettes over any part of the light";
+    plan.compute("find silhouettes", why, SILHOUETTES, items(cluster_count, 16))
+        .bind("light_frame", reads.frame)
+        .bind("cluster_range", stock.range)
+        .bind("edges", stock.edges)
+        .bind("incident_faces", stock.incident_faces)
+        .bind("clusters", stock.clusters);
 }

@@ -3,13 +3,13 @@
 use softshadow_plan::Values;
 use softshadow_scene::{Light, LightFrame, LightKind, LightSamples, Outline, pass_seed};
 
-use super::DepthComplexity;
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
+use super::{DepthComplexity, Evaluation, blended};
 use crate::TechniqueError;
 use crate::parts::light_buffers::{self, SampleSet, Sampling};
 use crate::parts::{receivers, shading};
-use crate::request::Request;
+use crate::request::{ReceiverSource, Request};
 
 /// Samples of one set at most: as many as one uniform holds.
 pub(super) const MOST_SAMPLES: u32 = 256;
@@ -115,6 +115,9 @@ pub(crate) fn values(
     values.insert("fold settings".into(), bytemuck::bytes_of(&fold).to_vec());
     values.insert("receiver order".into(), bytemuck::cast_slice(&order(request)).to_vec());
     shading::values(request, settings.passes, &mut values);
+    if let (Evaluation::Blended, ReceiverSource::Camera(camera)) = (settings.evaluation, request.receivers) {
+        blended::values(request, settings, &camera.local(local), &mut values);
+    }
     Ok(values)
 }
 
