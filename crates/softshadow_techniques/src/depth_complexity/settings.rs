@@ -140,7 +140,7 @@ impl DepthComplexity {
         common
             + match self.evaluation {
                 Evaluation::Tiled => tiled::list_bytes_per_receiver(),
-                Evaluation::Blended => blended::bytes_per_receiver(self.samples),
+                Evaluation::Blended => blended::bytes_per_receiver(self),
             }
     }
 

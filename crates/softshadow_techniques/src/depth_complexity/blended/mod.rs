@@ -57,10 +57,12 @@ pub struct WedgeView {
 }
 
 /// Bytes on the device that one receiver takes here alone, at the widest digits.
-pub(super) fn bytes_per_receiver(samples: u32) -> u64 {
-    let most_targets = u64::from(TARGETS[TARGETS.len() - 1] * TARGET_BYTES);
+pub(super) fn bytes_per_receiver(settings: &DepthComplexity) -> u64 {
     // Its part of a tile, sums of changes, the pixel that is drawn on, and counters.
-    (2 * PART_BYTES).div_ceil(u64::from(TILE)) + CHANGE_BYTES + 4 + (u64::from(samples) * 4).max(most_targets)
+    (2 * PART_BYTES).div_ceil(u64::from(TILE))
+        + CHANGE_BYTES
+        + 4
+        + packing::most_bytes(settings.counters, settings.samples)
 }
 
 /// The stage that the request asks for.
@@ -265,8 +267,7 @@ fn append_counters(
         unpack(plan, 0, UNPACK_WORDS, "words", words);
         return;
     }
-    // An array of one layer would be no array on GL.
-    let shape = Shape::Texture { format: TextureFormat::Rgba32Float, size: image, layers: targets.max(2) as u32 };
+    let shape = Shape::Texture { format: TextureFormat::Rgba32Float, size: image, layers: packing::layers(targets) };
     let texture = plan.resource("counters", shape, Origin::Transient);
     let fragment = FRAGMENTS[TARGETS.iter().position(|n| *n as usize == targets).unwrap_or_default()];
     for (draw, packings) in packings.iter().enumerate() {

@@ -131,5 +131,23 @@ pub const TARGET_BYTES: u32 = 16;
 /// How many targets a draw may have: there is a fragment shader for each.
 pub const TARGETS: [u32; 6] = [1, 2, 3, 4, 6, 8];
 
+/// Layers of a texture of counters: an array of one layer would be no array on GL.
+#[must_use]
+pub fn layers(targets: usize) -> u32 {
+    targets.max(2) as u32
+}
+
+/// Bytes of a receiver's counters at the widest digits: a word, or a channel, for each sample, of as many as one draw has.
+#[must_use]
+pub fn most_bytes(counters: Counters, samples: u32) -> u64 {
+    match counters {
+        Counters::Words => u64::from(samples) * 4,
+        Counters::Float => {
+            let enough = TARGETS.iter().find(|targets| **targets * 4 >= samples);
+            u64::from(layers(*enough.unwrap_or(&TARGETS[TARGETS.len() - 1]) as usize) * TARGET_BYTES)
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests;
