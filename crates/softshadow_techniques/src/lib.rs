@@ -95,13 +95,18 @@ impl Technique {
         }
     }
 
-    /// Checks whether the settings can serve such receivers on such a host.
+    /// Checks whether the settings can serve such receivers and lights on such a host.
     ///
     /// # Errors
     /// [`TechniqueError::Setting`] names the setting, and one that can.
-    pub fn check_call(&self, receivers: ReceiverSource<'_>, host: &Host) -> Result<(), TechniqueError> {
+    pub fn check_call(
+        &self,
+        receivers: ReceiverSource<'_>,
+        lights: &[Light],
+        host: &Host,
+    ) -> Result<(), TechniqueError> {
         match self {
-            Self::DepthComplexity(settings) => settings.check_call(receivers, host),
+            Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
     }

@@ -242,6 +242,9 @@ fn wedges_are_drawn_and_counted_as_plans_say() {
     let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/blended/{file}.wgsl"), name).bytes);
     assert_eq!(constant(&text, "DRAW_BYTES"), Some(bytes("append_wedges", "DrawArguments")));
     assert_eq!(constant(&text, "CHANGE_BYTES"), Some(bytes("draw_wedges", "Changes")));
+    // A face of four corners is two triangles, and has two caps.
+    assert_eq!(constant(&source("src/depth_complexity/blended/z_fail.rs"), "CAP_CORNERS"), Some(2 * 2 * 3));
+    assert!(shader("depth_complexity/blended/z_fail.wgsl").contains("faces[index / 12u]"));
     // An indirect draw begins with its vertices, then instances.
     let draw = twin("depth_complexity/blended/append_wedges.wgsl", "DrawArguments").members;
     let names = ["vertices", "instances", "first_vertex", "first_instance"];

@@ -1,8 +1,8 @@
 //! Wedges drawn over a camera's image against tiles of receivers: the same edges, the same samples, the same bits.
 
 use softshadow::{
-    Camera, Context, Counters, DepthComplexity, DeviceChoice, Evaluation, Light, LightShape, LightTexture, Options,
-    Receivers, Scene, Technique, Visibility, adapters, visibility,
+    Camera, Context, Counters, DepthComplexity, DeviceChoice, Evaluation, InitialCounts, Light, LightShape,
+    LightTexture, Options, Receivers, Scene, Technique, Visibility, adapters, visibility,
 };
 
 use crate::common::{Random, bits, context, lamp, points, rectangle, see, shipped};
@@ -238,4 +238,41 @@ fn a_bit_that_differs_is_seen() {
     // The second word of 40 samples has eight of them.
     words[2 * 700 + 1] ^= 1 << 7 | 1 << 8;
     assert_eq!((differing(&seen, &seen, 40).0, differing(&seen, &spoilt, 40).0), (0, 2));
+}
+
+#[test]
+fn shadow_volumes_count_nearly_what_rays_count() {
+    // Rasterised depth says what lies behind a receiver, and signs say what an edge changes: next to edges they contradict. How often is
+    // measured here; that rays do not is measured above.
+    let against_rays = |scene: &Scene, light: &Light, camera: Camera| {
+        let of = |initial_counts| {
+            let settings = DepthComplexity { initial_counts, ..blended(64, Counters::Words) };
+            let lights = std::slice::from_ref(light);
+            see(scene, lights, &Receivers::Camera(camera), &Technique::DepthComplexity(settings))
+        };
+        let (rays, volumes) = (of(InitialCounts::Rays), of(InitialCounts::ZFail));
+        assert!(volumes.info.plan.contains("count caps") && !volumes.info.plan.contains("find faces"));
+        let words = |seen: &Visibility| seen.masks.as_ref().unwrap().bits.clone();
+        let pairs = words(&rays).into_iter().zip(words(&volumes)).collect::<Vec<_>>();
+        let differ = pairs.chunks(2).filter(|pair| pair.iter().any(|(a, b)| a != b)).count();
+        let hidden = pairs.chunks(2).filter(|pair| pair.iter().any(|(a, _)| *a != 0)).count();
+        (differ, rays.info.valid_receivers, hidden)
+    };
+    let mut total = (0, 0);
+    let mut add = |name: &str, (differ, valid, hidden): (usize, usize, usize)| {
+        println!("{name}: z-fail differs for {differ} of {valid} receivers, of which {hidden} lose some light");
+        assert!(hidden * 12 > valid, "{name} has shadows");
+        total = (total.0 + differ, total.1 + valid);
+    };
+    for name in ["fork", "cards", "toruses", "hall"] {
+        let (scene, light, camera) = shipped(name, [240, 180]);
+        add(name, against_rays(&scene, &light, camera));
+    }
+    let ground = scene(&[torus(0.5, 0.2, 24, 12), sphere([0.1, 0.0, 0.6], 0.25, 2), floor(-0.7)].concat());
+    let camera = Camera::look_at([0.9, -1.6, 1.0], [0.0, 0.0, -0.4], None, 50.0, [96, 72]).unwrap();
+    for light in lights().iter().filter(|light| !matches!(light.shape(), LightShape::Sphere { .. })) {
+        add(&format!("{:?}", light.shape()), against_rays(&ground, light, camera));
+    }
+    println!("{} of {} receivers", total.0, total.1);
+    assert!(total.0 * 2000 < total.1, "{} of {}", total.0, total.1);
 }

@@ -56,7 +56,7 @@ fn techniques() -> Vec<Technique> {
 
 /// Whether a technique serves such receivers here.
 fn serves(technique: &Technique, receivers: ReceiverSource<'_>, engine: &Engine) -> bool {
-    technique.check_call(receivers, &engine.host()).is_ok()
+    technique.check_call(receivers, &lights()[..1], &engine.host()).is_ok()
 }
 
 fn occluders(scene: &SceneContents, lights: &[Light]) -> Vec<Arc<OccluderContents>> {

@@ -29,7 +29,7 @@ use softshadow_plan::{Kernel, Origin, Over, Plan, ResourceId, Shape};
 use crate::parts::resolve::{BLOCKED, Masks};
 use crate::parts::{light_buffers, receivers, resolve};
 use crate::request::{ReceiverSource, Request};
-pub use settings::{Counters, DepthComplexity, Evaluation};
+pub use settings::{Counters, DepthComplexity, Evaluation, InitialCounts};
 pub use tiled::LIST_COUNTS;
 use tiled::{SLOT_BYTES, TILE, tiles};
 use values::MOST_SAMPLES;

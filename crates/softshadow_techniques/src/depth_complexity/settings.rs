@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::Host;
-use softshadow_scene::SamplePattern;
+use softshadow_scene::{Light, LightShape, SamplePattern};
 
 use super::blended::{self, BASES};
 use super::tiled::{self, SLOT_BYTES};
@@ -31,6 +31,8 @@ pub struct DepthComplexity {
     pub exact_area: bool,
     /// How edges find their receivers.
     pub evaluation: Evaluation,
+    /// Blended only: how layers over the reference point are counted.
+    pub initial_counts: InitialCounts,
     /// Blended only: where counters are kept.
     pub counters: Counters,
     /// Blended only: the smallest base of a counter's digit, 8, 16, 64 or 256. Where counts can be larger, a larger one is taken.
@@ -47,6 +49,16 @@ pub enum Evaluation {
     Tiled,
     /// Edges are drawn as wedges over the camera's image, and counters added by the hardware.
     Blended,
+}
+
+/// How the blended evaluation counts layers over the reference point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InitialCounts {
+    /// By a ray a receiver, with the signs by which edges count: as in tiles.
+    Rays,
+    /// By shadow volumes behind the receiver, as published: wrong for some receivers next to edges and in contact.
+    ZFail,
 }
 
 /// Where the blended evaluation keeps its counters.
@@ -68,6 +80,7 @@ impl Default for DepthComplexity {
             passes: 1,
             exact_area: true,
             evaluation: Evaluation::Tiled,
+            initial_counts: InitialCounts::Rays,
             counters: Counters::Words,
             base: SMALLEST_BASE,
             batches: 1,
@@ -94,6 +107,7 @@ impl DepthComplexity {
         }
         let defaults = Self::default();
         let changed = [
+            ("initial_counts", self.initial_counts != defaults.initial_counts),
             ("counters", self.counters != defaults.counters),
             ("base", self.base != defaults.base),
             ("batches", self.batches != defaults.batches),
@@ -104,11 +118,17 @@ impl DepthComplexity {
         }
     }
 
-    /// Whether wedges can be drawn for these receivers on this host.
-    pub(crate) fn check_call(&self, receivers: ReceiverSource<'_>, host: &Host) -> Result<(), TechniqueError> {
+    /// Whether wedges can be drawn for these receivers and lights on this host.
+    pub(crate) fn check_call(
+        &self,
+        receivers: ReceiverSource<'_>,
+        lights: &[Light],
+        host: &Host,
+    ) -> Result<(), TechniqueError> {
         let fail = |setting, reason: &str| {
             Err(TechniqueError::Setting { technique: "depth_complexity", setting, reason: reason.into() })
         };
+        let is_sphere = |light: &Light| matches!(light.shape(), LightShape::Sphere { .. });
         let is_camera = matches!(receivers, ReceiverSource::Camera(_));
         match self.evaluation {
             Evaluation::Tiled => Ok(()),
@@ -121,6 +141,10 @@ impl DepthComplexity {
             Evaluation::Blended if self.counters == Counters::Float && !host.features.float32_blendable => fail(
                 "counters",
                 "'float' needs float32-blendable, which this device lacks; use 'words', or evaluation 'tiled'",
+            ),
+            Evaluation::Blended if self.initial_counts == InitialCounts::ZFail && lights.iter().any(is_sphere) => fail(
+                "initial_counts",
+                "'z_fail' needs one reference point, and that of a sphere light moves with the receiver; use 'rays'",
             ),
             Evaluation::Blended => Ok(()),
         }

@@ -68,8 +68,8 @@ pub(super) fn append_fold(
     let counts = plan.buffer("running counts", COUNT_BYTES);
     plan.clear("no counts", "nothing is counted yet", counts);
     let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
-    let stock = Stock { faces, face_tree, edges, incident_faces, range, clusters, parts, areas, counts };
-    append_depths(plan, request, reads, &stock, cluster_count);
+    append_depths(plan, request, reads, &Stock { faces, face_tree, edges, range, parts, areas, counts });
+    append_silhouettes(plan, occluders, reads, &EdgeStock { edges, incident_faces, range, clusters });
     let why = "bounds 32 clusters of edges at a time";
     plan.compute("bound clusters", why, BOUND_CLUSTERS, items(clusters_in(cluster_count), 8))
         .bind("cluster_range", range)
@@ -113,21 +113,27 @@ pub(super) fn append_fold(
     areas
 }
 
-/// What hides a light, and what the passes before any edge is drawn or listed leave.
-pub(super) struct Stock {
-    pub(super) faces: ResourceId,
-    pub(super) face_tree: ResourceId,
+/// What silhouettes are found with.
+pub(super) struct EdgeStock {
     pub(super) edges: ResourceId,
     pub(super) incident_faces: ResourceId,
     pub(super) range: ResourceId,
     pub(super) clusters: ResourceId,
+}
+
+/// What layers are counted with.
+pub(super) struct Stock {
+    pub(super) faces: ResourceId,
+    pub(super) face_tree: ResourceId,
+    pub(super) edges: ResourceId,
+    pub(super) range: ResourceId,
     pub(super) parts: ResourceId,
     pub(super) areas: ResourceId,
     pub(super) counts: ResourceId,
 }
 
-/// Counts the layers over the reference point for every receiver, and finds the edges that can be silhouettes at all.
-pub(super) fn append_depths(plan: &mut Plan, request: &Request<'_>, reads: &Reads, stock: &Stock, cluster_count: u32) {
+/// Counts the layers over the reference point for every receiver.
+pub(super) fn append_depths(plan: &mut Plan, request: &Request<'_>, reads: &Reads, stock: &Stock) {
     let tile_count = tiles(request);
     let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
     let why = "bounds the receivers of each tile, and the shaft between them and the light";
@@ -153,8 +159,13 @@ pub(super) fn append_depths(plan: &mut Plan, request: &Request<'_>, reads: &Read
         .bind("slots", reads.slots)
         .bind("blocked", reads.blocked)
         .bind("counts", stock.counts);
+}
+
+/// Finds the edges that can be silhouettes at all.
+pub(super) fn append_silhouettes(plan: &mut Plan, occluders: &OccluderContents, reads: &Reads, stock: &EdgeStock) {
+    let cluster_count = occluders.edge_count.div_ceil(CLUSTER);
     let why = "finds the edges that can be silhouettes over any part of the light";
-    plan.compute("find silhouettes", why, SILHOUETTES, items(cluster_count, 16))
+    plan.compute("find silhouettes", why, SILHOUETTES, Over::Items { count: cluster_count, work_per_item: 16 })
         .bind("light_frame", reads.frame)
         .bind("cluster_range", stock.range)
         .bind("edges", stock.edges)

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use softshadow_plan::{Host, Origin, Plan, Program, Step, Values, Work, check};
 use softshadow_scene::Camera;
-use softshadow_techniques::depth_complexity::{Counters, Evaluation};
+use softshadow_techniques::depth_complexity::{Counters, Evaluation, InitialCounts};
 use softshadow_techniques::{
     Block, DepthComplexity, ReceiverSource, Request, Technique, VisibilityProgram, Wants, blocks,
 };
@@ -48,7 +48,8 @@ fn every_stage_runs_and_every_parameter_has_its_value() {
     for (scene, light) in (0..3).flat_map(|scene| (0..5).map(move |light| (scene, light))) {
         for counters in COUNTERS {
             for (samples, base, batches) in [(1, 8, 1), (16, 64, 2), (33, 16, 1), (64, 64, 2), (256, 256, 1)] {
-                let settings = DepthComplexity { base, batches, ..settings(samples, counters) };
+                let initial_counts = if batches == 2 { InitialCounts::ZFail } else { InitialCounts::Rays };
+                let settings = DepthComplexity { base, batches, initial_counts, ..settings(samples, counters) };
                 for host in [host(32), host(128)] {
                     for largest in [[0; 4], [70, 9, 2, 0], [9, 70, 2, 0], [70_000, 70_000, 3, 0], [u32::MAX; 4]] {
                         let request = Request { host, ..fixture.request_for(scene, fixture.camera(), light) };
@@ -80,6 +81,22 @@ fn a_light_without_casters_has_no_wedge() {
         assert_eq!(first.decision, first.find("largest counts"));
         assert_eq!(outputs(&second), ["visibility"]);
     }
+}
+
+#[test]
+fn shadow_volumes_and_rays_count_alone() {
+    let fixture = Fixture::new();
+    let counting = |initial_counts| {
+        let settings = DepthComplexity { initial_counts, ..settings(64, Counters::Words) };
+        let [(first, _), (second, _)] = stages(&settings, &fixture.request(1, fixture.camera()), [0; 4]);
+        let words = ["bound tiles", "find faces", "count reference depth", "count caps", "count sides", "take layers"];
+        let found = words.map(|word| labels(&first).contains(&word));
+        (found, first.find("face hierarchy").is_some(), second)
+    };
+    let [rays, volumes] = [InitialCounts::Rays, InitialCounts::ZFail].map(counting);
+    assert_eq!((rays.0, rays.1), ([true, true, true, false, false, false], true));
+    assert_eq!((volumes.0, volumes.1), ([false, false, false, true, true, true], false));
+    assert_eq!(rays.2, volumes.2, "what follows is the same");
 }
 
 #[test]
@@ -153,7 +170,9 @@ fn a_block_is_sized_by_no_less_than_a_receiver_takes() {
 fn calls_that_cannot_be_drawn_are_refused_by_name() {
     let fixture = Fixture::new();
     let refused = |settings: DepthComplexity, receivers: ReceiverSource<'_>, host: &Host| {
-        Technique::DepthComplexity(settings).check_call(receivers, host).map_err(|error| error.to_string())
+        Technique::DepthComplexity(settings)
+            .check_call(receivers, &fixture.lights, host)
+            .map_err(|error| error.to_string())
     };
     let plain = Host::default();
     let words = settings(64, Counters::Words);
@@ -170,6 +189,11 @@ fn calls_that_cannot_be_drawn_are_refused_by_name() {
     let words = refused(float.clone(), fixture.camera(), &plain).unwrap_err();
     assert!(words.contains("counters") && words.contains("float32-blendable") && words.contains("'words'"), "{words}");
     assert_eq!(refused(float, fixture.camera(), &host(32)), Ok(()));
+    let z_fail = DepthComplexity { initial_counts: InitialCounts::ZFail, ..settings(64, Counters::Words) };
+    let words = refused(z_fail.clone(), fixture.camera(), &plain).unwrap_err();
+    assert!(words.contains("initial_counts") && words.contains("sphere") && words.contains("'rays'"), "{words}");
+    let flat = Technique::DepthComplexity(z_fail).check_call(fixture.camera(), &fixture.lights[..2], &plain);
+    assert_eq!(flat, Ok(()));
     // Tiles serve everybody.
     assert_eq!(refused(DepthComplexity::default(), fixture.points(), &blind), Ok(()));
 }
@@ -189,6 +213,7 @@ fn settings_out_of_range_are_named() {
     let tiled = DepthComplexity::default();
     for (settings, name) in [
         (DepthComplexity { counters: Counters::Float, ..tiled.clone() }, "counters"),
+        (DepthComplexity { initial_counts: InitialCounts::ZFail, ..tiled.clone() }, "initial_counts"),
         (DepthComplexity { base: 64, ..tiled.clone() }, "base"),
         (DepthComplexity { batches: 2, ..tiled.clone() }, "batches"),
     ] {

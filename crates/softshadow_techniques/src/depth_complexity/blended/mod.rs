@@ -6,6 +6,7 @@
 //! read off. What a wedge adds is decided by the predicates of the tiled evaluation, so the masks are the same, bit for bit.
 
 mod packing;
+mod z_fail;
 
 use softshadow_plan::{
     Blend, ColorTarget, Count, Kernel, Origin, Over, Plan, Raster, RasterKernel, ResourceId, Shape, TextureFormat,
@@ -13,9 +14,12 @@ use softshadow_plan::{
 };
 use softshadow_scene::LocalCamera;
 
-use super::tiled::{CLUSTER, CLUSTER_BYTES, COUNT_BYTES, LIST_COUNTS, PART_BYTES, Stock, TILE, append_depths, tiles};
+use super::tiled::{
+    CLUSTER, CLUSTER_BYTES, COUNT_BYTES, EdgeStock, LIST_COUNTS, PART_BYTES, Stock, TILE, append_depths,
+    append_silhouettes, tiles,
+};
 use super::values::ClusterRange;
-use super::{DepthComplexity, Reads, append_masks};
+use super::{DepthComplexity, InitialCounts, Reads, append_masks};
 use crate::parts::occluder_buffers::OccluderContents;
 use crate::parts::receivers::clip_ways;
 use crate::parts::resolve::{BLOCKED, Masks};
@@ -141,29 +145,37 @@ fn bound(request: &Request<'_>, settings: &DepthComplexity, image: [u32; 2]) -> 
     let Some(occluders) = hidden_by(request) else { return plan };
     let (count, cluster_count) = (request.block.count as u32, occluders.edge_count.div_ceil(CLUSTER));
     let wedges = Wedges::new(&mut plan, request, occluders);
-    let stock = Stock {
-        faces: plan.uploaded("faces", &occluders.faces),
-        face_tree: plan.uploaded("face hierarchy", &occluders.face_tree),
-        edges: wedges.edges,
-        incident_faces: wedges.incident_faces,
-        range: plan.parameter("cluster range", size_of::<ClusterRange>() as u64),
-        clusters: plan.buffer("clusters", u64::from(cluster_count) * CLUSTER_BYTES),
-        parts: plan.buffer("tile parts", 2 * u64::from(tiles(request)) * PART_BYTES),
-        areas: plan.buffer("visible areas", u64::from(count) * 4),
-        counts: plan.buffer("running counts", COUNT_BYTES),
-    };
-    plan.clear("no counts", "nothing is counted yet", stock.counts);
-    append_depths(&mut plan, request, &reads, &stock, cluster_count);
+    let range = plan.parameter("cluster range", size_of::<ClusterRange>() as u64);
+    let clusters = plan.buffer("clusters", u64::from(cluster_count) * CLUSTER_BYTES);
+    let counts = plan.buffer("running counts", COUNT_BYTES);
+    let canvas = canvas(&mut plan, image);
+    plan.clear("no counts", "nothing is counted yet", counts);
+    let (edges, incident_faces) = (wedges.edges, wedges.incident_faces);
+    append_silhouettes(&mut plan, occluders, &reads, &EdgeStock { edges, incident_faces, range, clusters });
     plan.clear("no wedges", "no edge is listed yet", wedges.arguments);
     let why = "lists the silhouettes, and counts the corners of their wedges for the draws";
     plan.compute("list wedges", why, APPEND_WEDGES, items(cluster_count, 32))
-        .bind("clusters", stock.clusters)
-        .bind("edges", stock.edges)
+        .bind("clusters", clusters)
+        .bind("edges", edges)
         .bind("wedges", wedges.wedges)
         .bind("draw", wedges.arguments)
-        .bind("counts", stock.counts);
+        .bind("counts", counts);
+    match settings.initial_counts {
+        InitialCounts::ZFail => z_fail::append(&mut plan, request, occluders, &wedges, &reads, canvas),
+        InitialCounts::Rays => {
+            let stock = Stock {
+                faces: plan.uploaded("faces", &occluders.faces),
+                face_tree: plan.uploaded("face hierarchy", &occluders.face_tree),
+                edges,
+                range,
+                parts: plan.buffer("tile parts", 2 * u64::from(tiles(request)) * PART_BYTES),
+                areas: plan.buffer("visible areas", u64::from(count) * 4),
+                counts,
+            };
+            append_depths(&mut plan, request, &reads, &stock);
+        }
+    }
     plan.clear("no changes", "nothing changes yet", wedges.changes);
-    let canvas = canvas(&mut plan, image);
     let why = "adds up by how much the counters of each receiver can rise and fall";
     wedges
         .draw(&mut plan, "bound changes".into(), why, "bound_changes", vec![canvas], &reads)
@@ -179,7 +191,7 @@ fn bound(request: &Request<'_>, settings: &DepthComplexity, image: [u32; 2]) -> 
         .bind("largest", largest);
     let report = plan.buffer(LIST_COUNTS, COUNT_BYTES);
     let why = "tells how many edges there were, and whether anything was left undone";
-    plan.copy("report counts", why, [stock.counts, report], COUNT_BYTES);
+    plan.copy("report counts", why, [counts, report], COUNT_BYTES);
     plan.outputs.extend([report, largest]);
     plan.decision = Some(largest);
     plan

@@ -133,13 +133,13 @@ pub const TARGETS: [u32; 6] = [1, 2, 3, 4, 6, 8];
 
 /// Layers of a texture of counters: an array of one layer would be no array on GL.
 #[must_use]
-pub fn layers(targets: usize) -> u32 {
+pub(super) fn layers(targets: usize) -> u32 {
     targets.max(2) as u32
 }
 
 /// Bytes of a receiver's counters at the widest digits: a word, or a channel, for each sample, of as many as one draw has.
 #[must_use]
-pub fn most_bytes(counters: Counters, samples: u32) -> u64 {
+pub(super) fn most_bytes(counters: Counters, samples: u32) -> u64 {
     match counters {
         Counters::Words => u64::from(samples) * 4,
         Counters::Float => {
