@@ -1,8 +1,8 @@
 // Draws the wedges of silhouette edges: what each edge changes at the receiver of every pixel that its wedge covers.
 //
 // The hull only finds the pixels. What changes, and for which samples, is decided by the predicates of the tiled path at the receiver
-// itself, so a wide hull costs fragments and no bit. Only those triangles of a hull are drawn that the eye sees from within: each ray of the
-// eye leaves the hull through one of them, also from inside the wedge, and corners at infinity need no far plane.
+// itself, so a wide hull costs fragments and no bit. Only those triangles of a hull are drawn that the eye sees from within: each ray of
+// the eye leaves the hull through one of them, also from inside the wedge, and corners at infinity need no far plane.
 //
 // Corners are drawn to a part of a pixel, and thin triangles may fold over: then a pixel has two fragments of one facing and one of the
 // other. What faces the other way counts backwards, so that an edge always counts once.

@@ -1,7 +1,7 @@
 // A wedge: a convex, closed hull of every place from which an edge can be seen before some part of the light.
 //
-// It is [a, b] + R: the edge, and four ways R that hold every way from the light through the edge, extruded to infinity. Ten triangles close
-// it, whichever way rounding turns a comparison: for each side of R one at the end that lies farther out, for each way of R one that joins
+// It is [a, b] + R: the edge, and four ways R that hold every way from the light through the edge, extruded to infinity. Ten triangles
+// close it, whichever way rounding turns a comparison: for each side of R one at the end that lies farther out, for each way of R one that joins
 // the ends of its two sides (flat where they agree), and two at infinity. A hull that is too large costs fragments and changes no result.
 //#import depth_complexity/frame.wgsl
 

@@ -1,4 +1,4 @@
-// How the counters of a receiver's samples lie in words, or in the channels of colour targets: digits of so many bits, the first one lowest.
+// How the counters of a receiver's samples lie in words, or in the channels of colour targets: digits of so many bits, the first lowest.
 
 struct Packing {
     bits: u32,

@@ -98,8 +98,8 @@ fn count_layers(drawn: Drawn, @builtin(front_facing) enters: bool) -> @location(
     let receiver = receivers[index];
     let distance = dot(wedge_view.forward, receiver.position - wedge_view.eye);
     let change = select(drawn.weight, -drawn.weight, enters);
-    // The fragment's w is the reciprocal of its distance where it is no way to infinity. A receiver's own face, which it is lifted off, lies
-    // behind it; and hides nothing from it, so that it enters its volume there but does not leave it.
+    // The fragment's w is the reciprocal of its distance where it is no way to infinity. A receiver's own face, which it is lifted off,
+    // lies behind it; and hides nothing from it, so that it enters its volume there but does not leave it.
     let is_behind = drawn.clip.w * distance * drawn.share < 1.0;
     let counts = select(is_behind, change < 0, drawn.triangle != NO_TRIANGLE && drawn.triangle == receiver.triangle);
     if (counts && change != 0 && receiver.kind != RECEIVER_NONE) {

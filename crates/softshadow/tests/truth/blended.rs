@@ -276,3 +276,34 @@ fn shadow_volumes_count_nearly_what_rays_count() {
     println!("{} of {} receivers", total.0, total.1);
     assert!(total.0 * 2000 < total.1, "{} of {}", total.0, total.1);
 }
+
+#[test]
+fn receivers_beside_their_pixels_are_told() {
+    // A camera nearly in the plane of a plate: it covers less than a row of pixels, and rounding of its corners decides which. A receiver
+    // that wedges might miss is refused; what is answered has the bits of tiles.
+    let light = lamp(rectangle(1.0, 0.6), [0.3, 0.2, 3.0]);
+    let thin = scene(&[plate([-1.0, 1.0], [-1.0, 1.0], 0.0), sphere([0.1, 0.0, 0.6], 0.25, 1)].concat());
+    let (mut refused, mut answered) = (0, 0);
+    for k in 0..60 {
+        let height = 0.0004 * 1.13f64.powi(k);
+        let camera = Camera::look_at([0.3, -4.0, height], [0.1, 0.0, 0.0], None, 30.0, [65, 33]).unwrap();
+        let run = |settings: DepthComplexity| {
+            let (lights, technique) = (std::slice::from_ref(&light), Technique::DepthComplexity(settings));
+            let options = Options { sample_masks: true, ..Options::default() };
+            visibility(context(), &thin, lights, &Receivers::Camera(camera), &technique, &options, &mut |_, _| true)
+        };
+        match run(blended(64, Counters::Words)) {
+            Ok(wedges) => {
+                answered += 1;
+                assert_eq!(differing(&run(tiled(64)).unwrap(), &wedges, 64).0, 0, "height {height}");
+            }
+            Err(error) => {
+                refused += 1;
+                let words = error.to_string();
+                assert!(words.contains("middle of their pixels") && words.contains("'tiled'"), "{words}");
+            }
+        }
+    }
+    println!("{refused} refused, {answered} answered");
+    assert!(refused > 0 && answered > 30, "{refused} refused, {answered} answered");
+}
