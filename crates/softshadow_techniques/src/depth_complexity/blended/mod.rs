@@ -26,7 +26,8 @@ use crate::parts::resolve::{BLOCKED, Masks};
 use crate::parts::{light_buffers, receivers, resolve};
 use crate::request::Request;
 pub(super) use packing::BASES;
-pub use packing::{Digits, Largest, Packing, TARGET_BYTES, TARGETS};
+use packing::Digits;
+pub use packing::{Largest, Packing, TARGETS};
 
 /// Label of what the first stage finds and the second is chosen by: `Largest`.
 pub const LARGEST_COUNTS: &str = "largest counts";

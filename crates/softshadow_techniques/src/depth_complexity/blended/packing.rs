@@ -42,15 +42,15 @@ pub struct Largest {
 
 /// Digits of one width.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Digits {
+pub(super) struct Digits {
     /// Where they are.
-    pub counters: Counters,
+    pub(super) counters: Counters,
     /// Bits of one.
-    pub bits: u32,
+    pub(super) bits: u32,
     /// How many a word or channel has.
-    pub fields: u32,
+    pub(super) fields: u32,
     /// What every digit is read above its count: a count that rounding puts below 0 must not borrow from its neighbour.
-    pub bias: u32,
+    pub(super) bias: u32,
 }
 
 const fn words(bits: u32, bias: u32) -> Digits {
@@ -69,7 +69,7 @@ const CHANNELS: [Digits; 6] =
 impl Digits {
     /// The narrowest digits of at least this base that hold the counters. More than channels hold goes to words.
     #[must_use]
-    pub fn new(counters: Counters, base: u32, largest: Largest) -> Self {
+    pub(super) fn new(counters: Counters, base: u32, largest: Largest) -> Self {
         let wide_enough = |digits: &&Self| digits.bits >= base.ilog2() && digits.hold(largest);
         let channels = CHANNELS.iter().filter(|_| counters == Counters::Float).find(wide_enough);
         // A word of one digit holds what fits a word.
@@ -78,7 +78,7 @@ impl Digits {
 
     /// Whether no counter can leave its digit, at the end or, in a channel, at any moment.
     #[must_use]
-    pub fn hold(&self, largest: Largest) -> bool {
+    pub(super) fn hold(&self, largest: Largest) -> bool {
         let holds = |count: u64| count < 1 << self.bits;
         let fall = if self.counters == Counters::Float { u64::from(largest.fall) } else { 0 };
         holds(u64::from(largest.count) + u64::from(self.bias)) && holds(fall)
@@ -86,15 +86,15 @@ impl Digits {
 
     /// The draws that count so many samples, and the targets of each; 0 targets for words.
     #[must_use]
-    pub fn draws(&self, samples: u32, limits: &Limits) -> (Vec<Packing>, usize) {
+    pub(super) fn draws(&self, samples: u32, limits: &Limits) -> (Vec<Packing>, usize) {
         let (per_draw, targets, words) = match self.counters {
             Counters::Words => (samples, 0, samples.div_ceil(self.fields)),
             Counters::Float => {
                 let most = limits.color_targets.min(limits.color_bytes / TARGET_BYTES);
                 let needed = samples.div_ceil(4 * self.fields);
-                let fits = |count: &&u32| **count >= needed || **count == most;
-                let allowed = TARGETS.iter().filter(|count| **count <= most);
-                let targets = allowed.clone().find(fits).or_else(|| allowed.last()).copied().unwrap_or(1);
+                let mut allowed = TARGETS.iter().filter(|count| **count <= most);
+                let enough = allowed.clone().find(|count| **count >= needed);
+                let targets = enough.or_else(|| allowed.next_back()).copied().unwrap_or(1);
                 (4 * self.fields * targets, targets as usize, 4 * targets)
             }
         };
@@ -127,7 +127,7 @@ impl Packing {
 }
 
 /// Bytes of a pixel of one target.
-pub const TARGET_BYTES: u32 = 16;
+pub(super) const TARGET_BYTES: u32 = 16;
 /// How many targets a draw may have: there is a fragment shader for each.
 pub const TARGETS: [u32; 6] = [1, 2, 3, 4, 6, 8];
 

@@ -111,15 +111,12 @@ fn outer_before_inner_loses_counts_that_a_mixed_order_keeps() {
     };
     let orders = [Order::Mixed, Order::OuterFirst, Order::InnerFirst];
     let table = [32, 128, 256].map(|count| (count, orders.map(|order| share(count, order))));
-    for (count, [mixed, outer, inner]) in table {
-        println!(
-            "{count} events: {mixed:.3} of the pixels wrong in mixed order, {outer:.3} outer first, {inner:.3} inner first"
-        );
-        assert_eq!(mixed, 0.0, "{count}");
+    for (count, [mixed, ..]) in table {
+        assert_eq!(mixed, 0.0, "{count} events");
     }
     let outer_first = table.map(|(_, shares)| shares[1]);
-    assert_eq!(outer_first[0], 0.0);
-    assert!(outer_first[1] > 0.1 && outer_first[1] < 0.6 && outer_first[2] > 0.9, "{outer_first:?}");
+    // The page of the technique cites these.
+    assert_eq!(outer_first.map(|share| (share * 100.0_f64).round()), [0.0, 16.0, 94.0]);
 }
 
 #[test]
