@@ -150,7 +150,7 @@ fn blocks_textures_and_passes_change_no_bit() {
         let lights = [light.clone(), lights()[4].clone()];
         let whole = see(&scene, &lights, &receivers, &technique);
         let options = Options {
-            memory_limit_bytes: 600_000,
+            memory_limit_bytes: 400_000,
             standard_error: true,
             receivers: true,
             sample_masks: true,
