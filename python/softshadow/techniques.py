@@ -122,14 +122,29 @@ class DepthComplexity(Technique):
     passes : int
         Sets of samples that are averaged, each with a seed of its own.
     exact_area : bool
-        Whether the light's visible area answers where the samples show a single layer.
+        Whether the light's visible area answers where the samples show a single layer. With evaluation "blended"
+        samples alone answer, and the result's `info["notes"]` say so.
     spread, tile
-        As in :class:`RayTraced`, and with the same samples; interleaved, at most 8192 in all sets together.
+        As in :class:`RayTraced`, and with the same samples; interleaved, at most 8192 in all sets together. Evaluation
+        "blended" knows "correlated" alone.
+    evaluation : {"tiled", "blended"}
+        How edges find their receivers: listed for tiles of them, for points and cameras; or drawn over a camera's image
+        as penumbra wedges, as published. The samples are the same.
+    initial_counts : {"rays", "z_fail"}
+        Blended only: how layers over the light's reference point are counted: by a ray a receiver, or by shadow volumes
+        as published, which is wrong for a few receivers next to edges, and not for sphere lights.
+    counters : {"words", "float"}
+        Blended only: where samples are counted: in 32-bit words, or in float32 colour targets as published, which not
+        every device can blend.
+    base : {8, 16, 64, 256}
+        Blended only: the smallest base of a counter's digit. Larger ones are taken where counts ask for them.
+    batches : {1, 2}
+        Blended only: whether changes are counted as they come, or all that add before all that take away.
 
     Raises
     ------
     SettingsError
-        For a setting outside its range.
+        For a setting outside its range, and for receivers or devices that an evaluation does not serve.
     """
 
     name: ClassVar[str] = "depth_complexity"
@@ -140,6 +155,11 @@ class DepthComplexity(Technique):
     exact_area: bool = _DEPTH_COMPLEXITY["exact_area"]
     spread: str = _DEPTH_COMPLEXITY["spread"]
     tile: int = _DEPTH_COMPLEXITY["tile"]
+    evaluation: str = _DEPTH_COMPLEXITY["evaluation"]
+    initial_counts: str = _DEPTH_COMPLEXITY["initial_counts"]
+    counters: str = _DEPTH_COMPLEXITY["counters"]
+    base: int = _DEPTH_COMPLEXITY["base"]
+    batches: int = _DEPTH_COMPLEXITY["batches"]
 
 
 TECHNIQUES: dict[str, type[Technique]] = {kind.name: kind for kind in (RayTraced, HardShadowMap, DepthComplexity)}

@@ -28,6 +28,10 @@ def look(**settings):
     return ss.Camera.look_at(**{"eye": (1, 1, 1), "target": (0, 0, 0), "fov_y_deg": 40, "size": (4, 3)} | settings)
 
 
+def blended(**settings):
+    return ss.DepthComplexity(evaluation="blended", **settings)
+
+
 SCALED = np.diag([2.0, 2, 2, 1])
 MIRROR = np.diag([-1.0, 1, 1, 1])
 INF = float("inf")
@@ -135,6 +139,14 @@ NONSENSE = [
     (lambda: ss.DepthComplexity(samples=257), ss.SettingsError, "256"),
     (lambda: ss.DepthComplexity(passes=0), ss.SettingsError, "passes"),
     (lambda: ss.DepthComplexity(exact_area=1), ss.SettingsError, "exact_area.*True or False"),
+    (lambda: ss.DepthComplexity(evaluation="rasterised"), ss.SettingsError, "tiled.*blended"),
+    (lambda: ss.DepthComplexity(evaluation=2), ss.SettingsError, "evaluation"),
+    (lambda: ss.DepthComplexity(counters="float"), ss.SettingsError, "counters.*'blended' alone"),
+    (lambda: blended(counters="bytes"), ss.SettingsError, "words.*float"),
+    (lambda: blended(initial_counts="stencil"), ss.SettingsError, "rays.*z_fail"),
+    (lambda: blended(base=10), ss.SettingsError, "base.*8, 16, 64 or 256"),
+    (lambda: blended(batches=3), ss.SettingsError, "batches.*1 or 2"),
+    (lambda: visibility(SCENE, LIGHT, points=CARD, technique=blended()), ss.SettingsError, "knows no points.*'tiled'"),
     (lambda: ss.HardShadowMap(resolution=0), ss.SettingsError, "resolution"),
     (lambda: ss.HardShadowMap(resolution=2**31), ss.SettingsError, "resolution"),
     # calls

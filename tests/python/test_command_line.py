@@ -119,6 +119,8 @@ def test_several_lights_are_added_in_a_picture(tmp_path, mesh_file):
         (["render", "hall", "-o", "a.png", "--technique", "ray-traced:spread=wide"], "'wide' is none of"),
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:spread=interleaved,tile=1"], "2 and 8"),
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:exact_area=maybe"], "true or false"),
+        (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:base=64"], "'blended' alone"),
+        (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:evaluation=blended,base=9"], "64 or 256"),
         (["render", "hall", "-o", "a.png", "--device", "toaster"], "toaster"),
         ([], "required"),
     ],

@@ -218,8 +218,27 @@ def test_silhouette_edges_see_the_samples_that_rays_see(scene):
     assert both[1].info["area_receivers"] == 0
     by_area = visibility(scene, light, camera=camera, technique=ss.DepthComplexity())
     assert by_area.info["area_receivers"] > 0
+    assert by_area.info["notes"] == []
     difference = np.abs(by_area.values - both[1].values)[by_area.valid]
     assert 0 < difference.max() < 0.1, "areas differ from samples by no more than samples from the truth"
+
+
+@pytest.mark.parametrize("settings", [{}, {"base": 64, "batches": 2}, {"initial_counts": "z_fail"}])
+def test_wedges_see_the_samples_that_tiles_see(scene, settings):
+    light, camera = light_above(), camera_above((32, 24))
+    drawn = ss.DepthComplexity(evaluation="blended", **settings)
+    assert drawn == ss.DepthComplexity(evaluation="blended", counters="words", **settings)
+    tiles, wedges = (
+        visibility(scene, light, camera=camera, technique=technique, sample_masks=True)
+        for technique in (ss.DepthComplexity(exact_area=False), drawn)
+    )
+    np.testing.assert_array_equal(tiles.visible_samples, wedges.visible_samples)
+    np.testing.assert_array_equal(tiles.values, wedges.values)
+    assert (~wedges.visible_samples).sum() > 100
+    assert wedges.info["silhouette_edges"] > 0
+    assert "list wedges" in wedges.info["plan"]
+    assert wedges.info["area_receivers"] == 0
+    assert any("exact_area" in note for note in wedges.info["notes"])
 
 
 def test_light_points_of_a_sphere_fill_its_disc_as_each_receiver_sees_it(scene, floor_points):

@@ -43,7 +43,7 @@ pub struct Info {
     pub zero_area_triangles: usize,
     /// Triangles that vanish in local float32, left out.
     pub unresolved_triangles: usize,
-    /// What the scene's file holds that is not modelled.
+    /// What the scene's file holds that is not modelled, and settings that the call could not follow.
     pub notes: Vec<String>,
     /// `statistical`: values have a standard error. `none`: nothing is known about their error.
     pub error_kind: &'static str,

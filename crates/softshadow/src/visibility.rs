@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use softshadow_engine::{RunReport, StageReport, Timing};
 use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
-use softshadow_techniques::depth_complexity::LIST_COUNTS;
+use softshadow_techniques::depth_complexity::blended::{LARGEST_COUNTS, Largest};
+use softshadow_techniques::depth_complexity::{Evaluation, LIST_COUNTS};
 use softshadow_techniques::parts::VISIBILITY;
 use softshadow_techniques::parts::interleaving::NOISY_BYTES;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
@@ -135,12 +136,12 @@ pub(crate) fn run(
         Receivers::Camera(camera) => ReceiverSource::Camera(camera),
         Receivers::Points(points) => ReceiverSource::Points(points),
     };
-    technique.check_receivers(source)?;
     if lights.is_empty() {
         return Err(Error::Settings("at least one light is needed".into()));
     }
     let engine = context.engine()?;
     let host = engine.host();
+    technique.check_call(source, lights, &host)?;
     if let Receivers::Camera(camera) = receivers {
         let (needed, limit) = (u64::from(camera.size()[0].max(camera.size()[1])), u64::from(host.limits.texture_size));
         if needed > limit {
@@ -183,7 +184,7 @@ pub(crate) fn run(
     };
     program.check()?;
     if let Some(task) = program.task(0) {
-        collector.result.info.plan = program.plan(task).explain();
+        collector.result.info.plan = program.plan(task, &[]).explain();
     }
     collector.result.info.blocks = program.blocks.len();
     let everything = contents.contents().chain(occluders.iter().flat_map(|o| o.contents()));
@@ -195,6 +196,13 @@ pub(crate) fn run(
             done += 1;
             if let Some(task) = program.task(stage.index) {
                 collector.add(program.blocks[task.block], task.light, &stage.outputs);
+            }
+            // The plan of a later stage follows from what the first one found.
+            if let (0, Some(task), Some(found)) =
+                (stage.index, program.task(1).filter(|task| task.stage == 1), stage.outputs.get(LARGEST_COUNTS))
+            {
+                let decision: Vec<u32> = bytemuck::pod_collect_to_vec(found);
+                collector.result.info.plan += &program.plan(task, &decision).explain();
             }
         }
         on_progress(done, total)
@@ -211,6 +219,13 @@ pub(crate) fn run(
                  device, or split the scene"
             ),
         }));
+    }
+    if collector.astray > 0 {
+        let count = collector.astray;
+        return Err(Error::Gpu(format!(
+            "{count} receivers stand too far from the middle of their pixels for wedges to reach them, on triangles thinner than a \
+             pixel; use evaluation 'tiled'"
+        )));
     }
     if report.stages as u64 != total {
         return Err(Error::Gpu(format!("only {} of {total} stages ran", report.stages)));
@@ -255,6 +270,16 @@ fn receivers_per_block(
     Ok(most)
 }
 
+/// Settings that a call cannot follow, where it answers all the same.
+fn technique_notes(technique: &Technique) -> Option<String> {
+    match technique {
+        Technique::DepthComplexity(settings) if settings.exact_area && settings.evaluation == Evaluation::Blended => {
+            Some("exact_area: evaluation 'blended' answers by samples alone".into())
+        }
+        _ => None,
+    }
+}
+
 /// Puts the blocks' outputs where they belong.
 struct Collector<'a> {
     result: Visibility,
@@ -263,6 +288,8 @@ struct Collector<'a> {
     caller_ids: &'a [u32],
     /// Rays that the driver cut short.
     unfinished: u64,
+    /// Receivers that no wedge is sure to reach.
+    astray: u64,
 }
 
 impl<'a> Collector<'a> {
@@ -303,7 +330,7 @@ impl<'a> Collector<'a> {
             blocks: 0,
             zero_area_triangles: contents.local.dropped.zero_area,
             unresolved_triangles: contents.local.dropped.below_resolution,
-            notes: scene.notes().to_vec(),
+            notes: scene.notes().iter().cloned().chain(technique_notes(technique)).collect(),
             error_kind: if has_error { "statistical" } else { "none" },
             standard_error: None,
             plan: String::new(),
@@ -333,7 +360,7 @@ impl<'a> Collector<'a> {
             info,
         };
         let frame = contents.local.frame;
-        Self { result, colors: Vec::new(), frame, caller_ids: &contents.local.caller_ids, unfinished: 0 }
+        Self { result, colors: Vec::new(), frame, caller_ids: &contents.local.caller_ids, unfinished: 0, astray: 0 }
     }
 
     fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Vec<u8>>) {
@@ -354,6 +381,10 @@ impl<'a> Collector<'a> {
             self.result.info.silhouette_edges += u64::from(counts[2]);
             self.unfinished += u64::from(counts[3]);
             self.result.info.area_receivers += u64::from(counts[4]);
+        }
+        if let Some(bytes) = outputs.get(LARGEST_COUNTS) {
+            let largest: Vec<Largest> = bytemuck::pod_collect_to_vec(bytes);
+            self.astray += largest.iter().map(|l| u64::from(l.astray)).sum::<u64>();
         }
         let (count, channels) = (self.result.receivers, self.result.channels);
         let copy = |label: &str, width: usize, into: &mut [f32]| {

@@ -11,7 +11,7 @@ pub mod ray_traced;
 mod request;
 
 use serde::{Deserialize, Serialize};
-use softshadow_plan::{Plan, Values};
+use softshadow_plan::{Host, Plan, Values};
 use softshadow_scene::{Light, SampleSpread, SceneError};
 
 pub use block::{Block, blocks};
@@ -96,12 +96,21 @@ impl Technique {
         }
     }
 
-    /// Checks that it can serve such receivers.
+    /// Checks whether the settings can serve such receivers and lights on such a host.
     ///
     /// # Errors
-    /// [`TechniqueError::Setting`] names the setting that needs others.
-    pub fn check_receivers(&self, receivers: ReceiverSource<'_>) -> Result<(), TechniqueError> {
-        spread::check_receivers(self.name(), self.interleaves(), receivers)
+    /// [`TechniqueError::Setting`] names the setting, and one that can.
+    pub fn check_call(
+        &self,
+        receivers: ReceiverSource<'_>,
+        lights: &[Light],
+        host: &Host,
+    ) -> Result<(), TechniqueError> {
+        spread::check_receivers(self.name(), self.interleaves(), receivers)?;
+        match self {
+            Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
+            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+        }
     }
 
     /// Whether pixels are averaged with their neighbours.
@@ -111,6 +120,15 @@ impl Technique {
             Self::RayTraced(settings) => settings.spread == SampleSpread::Interleaved,
             Self::DepthComplexity(settings) => settings.spread == SampleSpread::Interleaved,
             Self::HardShadowMap(_) => false,
+        }
+    }
+
+    /// Stages that one pass takes: more than one where a stage is chosen by what the one before found.
+    #[must_use]
+    pub fn stages(&self) -> u32 {
+        match self {
+            Self::DepthComplexity(settings) => settings.stages(),
+            Self::RayTraced(_) | Self::HardShadowMap(_) => 1,
         }
     }
 

@@ -8,6 +8,7 @@
 mod agreement;
 mod backends;
 mod bad_input;
+mod blended;
 mod blocks;
 mod closed_forms;
 mod common;

@@ -8,6 +8,7 @@ use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{
     Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, SampleSpread, Scene, look_at,
 };
+use softshadow_techniques::depth_complexity::{Counters, Evaluation};
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
     DepthComplexity, HardShadowMap, OccluderContents, RayTraced, ReceiverSource, SceneContents, Shading, Technique,
@@ -55,7 +56,18 @@ fn techniques() -> Vec<Technique> {
             ..DepthComplexity::default()
         }));
     }
+    let drawn = |samples, counters, batches| {
+        let (evaluation, passes) = (Evaluation::Blended, batches);
+        let settings = DepthComplexity { samples, counters, batches, passes, evaluation, ..DepthComplexity::default() };
+        Technique::DepthComplexity(settings)
+    };
+    all.extend([drawn(64, Counters::Words, 1), drawn(40, Counters::Float, 2), drawn(256, Counters::Float, 1)]);
     all
+}
+
+/// Whether a technique serves such receivers here.
+fn serves(technique: &Technique, receivers: ReceiverSource<'_>, engine: &Engine) -> bool {
+    technique.check_call(receivers, &lights()[..1], &engine.host()).is_ok()
 }
 
 fn occluders(scene: &SceneContents, lights: &[Light]) -> Vec<Arc<OccluderContents>> {
@@ -91,10 +103,10 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
     for technique in techniques() {
         for scene in &scenes {
             let occluders = occluders(scene, &lights);
-            let served = |receivers: &ReceiverSource<'_>| technique.check_receivers(*receivers).is_ok();
-            for receivers in
-                [ReceiverSource::Camera(&camera), ReceiverSource::Points(&points)].into_iter().filter(served)
-            {
+            for receivers in [ReceiverSource::Camera(&camera), ReceiverSource::Points(&points)] {
+                if !serves(&technique, receivers, &engine) {
+                    continue;
+                }
                 for picture in [None, Some(Shading::Integrated), Some(Shading::Modulated)] {
                     for most in [usize::MAX, 100] {
                         let wants = Wants { standard_error: true, sample_masks: true, picture };
@@ -120,8 +132,8 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
             }
         }
     }
-    // Two of twelve serve no points.
-    assert_eq!(runs, (12 + 10) * 2 * 3 * 2);
+    // Of fifteen, two average pixels, and three draw on images.
+    assert_eq!(runs, (15 + 10) * 2 * 3 * 2);
 }
 
 /// Outputs of every stage against what is asked for: values with a light's last pass, receivers and pictures once a block.
@@ -129,9 +141,10 @@ fn check_sizes(program: &VisibilityProgram<'_>, rows: &[BTreeMap<String, usize>]
     for (index, row) in rows.iter().enumerate() {
         let task = program.task(index).unwrap();
         let count = program.blocks[task.block].count;
-        let last_pass = task.pass + 1 == program.technique.passes();
+        let opens = task.stage == 0;
+        let last_pass = task.pass + 1 == program.technique.passes() && task.stage + 1 == program.technique.stages();
         let mut expected = BTreeMap::new();
-        if task.light == 0 && task.pass == 0 {
+        if opens && task.light == 0 && task.pass == 0 {
             expected.insert("receivers".to_owned(), count * 32);
         }
         if matches!(program.technique, Technique::RayTraced(_)) {
@@ -139,8 +152,11 @@ fn check_sizes(program: &VisibilityProgram<'_>, rows: &[BTreeMap<String, usize>]
                 expected.insert(format!("trace counts {index}"), 16);
             }
         }
-        if matches!(program.technique, Technique::DepthComplexity(_)) {
+        if matches!(program.technique, Technique::DepthComplexity(_)) && opens {
             expected.insert("list counts".to_owned(), 32);
+            if program.technique.stages() == 2 {
+                expected.insert("largest counts".to_owned(), 16);
+            }
         }
         if last_pass {
             expected.insert("visibility".to_owned(), count * 4 * 3);
@@ -184,9 +200,9 @@ fn an_empty_scene_is_run_too() {
     let engine = engine();
     let scene = SceneContents::new(LocalScene::new(&Scene::new(Vec::new()).unwrap(), None, 1 << 20));
     let (points, lights) = (Points::new(vec![[0.0; 3]; 9], None).unwrap(), lights());
-    for technique in techniques().into_iter().filter(|t| !t.interleaves()) {
+    for technique in techniques().iter().filter(|t| serves(t, ReceiverSource::Points(&points), &engine)) {
         let program = VisibilityProgram {
-            technique: &technique,
+            technique,
             scene: &scene,
             lights: &lights,
             occluders: &occluders(&scene, &lights),

@@ -25,13 +25,13 @@ const CHUNK_BYTES: u64 = 128;
 /// Chunks of lists that a tile and its bundles get on average, together: 3,840 edges and faces.
 const CHUNKS_PER_TILE: u64 = 128;
 /// Bytes of `ListCounts`.
-const COUNT_BYTES: u64 = 32;
+pub(super) const COUNT_BYTES: u64 = 32;
 /// Bytes of `TilePart`.
-const PART_BYTES: u64 = 112;
+pub(super) const PART_BYTES: u64 = 112;
 /// Bytes of `Slot`.
 pub(super) const SLOT_BYTES: u64 = 16;
 /// Bytes of `Cluster`.
-const CLUSTER_BYTES: u64 = 32;
+pub(super) const CLUSTER_BYTES: u64 = 32;
 
 const SILHOUETTES: Kernel = Kernel { file: "depth_complexity/silhouettes.wgsl", entry: "silhouettes" };
 const BOUND_CLUSTERS: Kernel = Kernel { file: "depth_complexity/bound_clusters.wgsl", entry: "bound_clusters" };
@@ -57,6 +57,17 @@ fn scattered(items: u32) -> u32 {
     items.div_ceil(64).next_multiple_of(STRIDES) * 64
 }
 
+/// Bytes of the lists of a block: their heads, and chunks.
+pub(super) fn list_bytes(request: &Request<'_>) -> u64 {
+    let tile_count = tiles(request);
+    u64::from(tile_count) * (2 * HEAD_BYTES + CHUNKS_PER_TILE * CHUNK_BYTES)
+}
+
+/// Bytes of the first chunk of the faces of every bundle.
+pub(super) fn first_face_bytes(request: &Request<'_>) -> u64 {
+    u64::from(2 * tiles(request) * BUNDLES) * 4
+}
+
 /// Tiles of a block.
 pub(super) fn tiles(request: &Request<'_>) -> u32 {
     (request.block.count as u32).div_ceil(TILE)
@@ -80,7 +91,7 @@ pub(super) fn append_fold(
     let clusters = plan.buffer("clusters", u64::from(cluster_count) * CLUSTER_BYTES);
     let groups = plan.buffer("groups of clusters", u64::from(clusters_in(cluster_count)) * CLUSTER_BYTES);
     let parts = plan.buffer("tile parts", 2 * u64::from(tile_count) * PART_BYTES);
-    let lists = plan.buffer("edge lists", u64::from(tile_count) * (2 * HEAD_BYTES + CHUNKS_PER_TILE * CHUNK_BYTES));
+    let lists = plan.buffer("edge lists", list_bytes(request));
     let areas = area_answers(request, settings).then(|| {
         let areas = plan.buffer("visible areas", request.block.count as u64 * 4);
         plan.clear("no areas", "samples answer, unless a fold finds an area", areas);
@@ -89,50 +100,9 @@ pub(super) fn append_fold(
     let counts = plan.buffer("running counts", COUNT_BYTES);
     plan.clear("no counts", "nothing is counted yet", counts);
     let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
-
-    let why = "bounds the receivers of each tile, and the shaft between them and the light";
-    plan.compute("bound tiles", why, BOUND_TILES, items(tile_count, 64))
-        .bind("light_frame", reads.frame)
-        .bind("cluster_range", range)
-        .bind("receivers", reads.receivers)
-        .bind("slots", reads.slots)
-        .bind("parts", parts);
-    let why = "finds the tiles with any face between them and the light";
-    plan.compute("find faces", why, FIND_FACES, items(2 * tile_count, 64))
-        .bind("face_tree", face_tree)
-        .bind("parts", parts);
-    let first_faces = plan.buffer("first faces", u64::from(2 * tile_count * BUNDLES) * 4);
-    let why = "lists for every eight receivers the faces that can lie between them and one point of the light";
-    plan.compute("list faces", why, LIST_FACES, items(scattered(2 * tile_count * BUNDLES), 64))
-        .bind("light_frame", reads.frame)
-        .bind("cluster_range", range)
-        .bind("receivers", reads.receivers)
-        .bind("slots", reads.slots)
-        .bind("face_tree", face_tree)
-        .bind("edges", edges)
-        .bind("parts", parts)
-        .bind("first_faces", first_faces)
-        .bind("lists", lists)
-        .bind("counts", counts);
-    let why = "counts the layers over one point of the light";
-    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(scattered(tile_count * TILE), 4))
-        .bind("light_frame", reads.frame)
-        .bind("cluster_range", range)
-        .bind("receivers", reads.receivers)
-        .bind("faces", faces)
-        .bind("edges", edges)
-        .bind("first_faces", first_faces)
-        .bind("lists", lists)
-        .bind("slots", reads.slots)
-        .bind("blocked", reads.blocked)
-        .bind("counts", counts);
-    let why = "finds the edges that can be silhouettes over any part of the light";
-    plan.compute("find silhouettes", why, SILHOUETTES, items(cluster_count, 16))
-        .bind("light_frame", reads.frame)
-        .bind("cluster_range", range)
-        .bind("edges", edges)
-        .bind("incident_faces", incident_faces)
-        .bind("clusters", clusters);
+    let first_faces = plan.buffer("first faces", first_face_bytes(request));
+    append_depths(plan, request, reads, &Stock { faces, face_tree, edges, range, parts, first_faces, lists, counts });
+    append_silhouettes(plan, occluders, reads, &EdgeStock { edges, incident_faces, range, clusters });
     let why = "bounds 32 clusters of edges at a time";
     plan.compute("bound clusters", why, BOUND_CLUSTERS, items(clusters_in(cluster_count), 8))
         .bind("cluster_range", range)
@@ -206,4 +176,77 @@ pub(super) fn append_fold(
     plan.copy("report counts", why, [counts, report], COUNT_BYTES);
     plan.outputs.push(report);
     areas
+}
+
+/// What silhouettes are found with.
+pub(super) struct EdgeStock {
+    pub(super) edges: ResourceId,
+    pub(super) incident_faces: ResourceId,
+    pub(super) range: ResourceId,
+    pub(super) clusters: ResourceId,
+}
+
+/// What layers are counted with.
+pub(super) struct Stock {
+    pub(super) faces: ResourceId,
+    pub(super) face_tree: ResourceId,
+    pub(super) edges: ResourceId,
+    pub(super) range: ResourceId,
+    pub(super) parts: ResourceId,
+    pub(super) first_faces: ResourceId,
+    pub(super) lists: ResourceId,
+    pub(super) counts: ResourceId,
+}
+
+/// Counts the layers over the reference point for every receiver.
+pub(super) fn append_depths(plan: &mut Plan, request: &Request<'_>, reads: &Reads, stock: &Stock) {
+    let tile_count = tiles(request);
+    let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
+    let why = "bounds the receivers of each tile, and the shaft between them and the light";
+    plan.compute("bound tiles", why, BOUND_TILES, items(tile_count, 64))
+        .bind("light_frame", reads.frame)
+        .bind("cluster_range", stock.range)
+        .bind("receivers", reads.receivers)
+        .bind("slots", reads.slots)
+        .bind("parts", stock.parts);
+    let why = "finds the tiles with any face between them and the light";
+    plan.compute("find faces", why, FIND_FACES, items(2 * tile_count, 64))
+        .bind("face_tree", stock.face_tree)
+        .bind("parts", stock.parts);
+    let why = "lists for every eight receivers the faces that can lie between them and one point of the light";
+    plan.compute("list faces", why, LIST_FACES, items(scattered(2 * tile_count * BUNDLES), 64))
+        .bind("light_frame", reads.frame)
+        .bind("cluster_range", stock.range)
+        .bind("receivers", reads.receivers)
+        .bind("slots", reads.slots)
+        .bind("face_tree", stock.face_tree)
+        .bind("edges", stock.edges)
+        .bind("parts", stock.parts)
+        .bind("first_faces", stock.first_faces)
+        .bind("lists", stock.lists)
+        .bind("counts", stock.counts);
+    let why = "counts the layers over one point of the light";
+    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(scattered(tile_count * TILE), 4))
+        .bind("light_frame", reads.frame)
+        .bind("cluster_range", stock.range)
+        .bind("receivers", reads.receivers)
+        .bind("faces", stock.faces)
+        .bind("edges", stock.edges)
+        .bind("first_faces", stock.first_faces)
+        .bind("lists", stock.lists)
+        .bind("slots", reads.slots)
+        .bind("blocked", reads.blocked)
+        .bind("counts", stock.counts);
+}
+
+/// Finds the edges that can be silhouettes at all.
+pub(super) fn append_silhouettes(plan: &mut Plan, occluders: &OccluderContents, reads: &Reads, stock: &EdgeStock) {
+    let cluster_count = occluders.edge_count.div_ceil(CLUSTER);
+    let why = "finds the edges that can be silhouettes over any part of the light";
+    plan.compute("find silhouettes", why, SILHOUETTES, Over::Items { count: cluster_count, work_per_item: 16 })
+        .bind("light_frame", reads.frame)
+        .bind("cluster_range", stock.range)
+        .bind("edges", stock.edges)
+        .bind("incident_faces", stock.incident_faces)
+        .bind("clusters", stock.clusters);
 }

@@ -3,13 +3,13 @@
 use softshadow_plan::Values;
 use softshadow_scene::{Light, LightFrame, LightKind, LightShape, Outline, SampleSpread};
 
-use super::DepthComplexity;
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
+use super::{DepthComplexity, Evaluation, blended};
 use crate::TechniqueError;
 use crate::parts::light_buffers::{self, Sampling};
 use crate::parts::{interleaving, receivers, shading};
-use crate::request::Request;
+use crate::request::{ReceiverSource, Request};
 
 /// Samples of one set at most: as many as one uniform holds.
 pub(super) const MOST_SAMPLES: u32 = 256;
@@ -125,12 +125,17 @@ pub(crate) fn values(
     }
     values.insert("receiver order".into(), bytemuck::cast_slice(&order(request)).to_vec());
     shading::values(request, settings.passes, &mut values);
+    if let (Evaluation::Blended, ReceiverSource::Camera(camera)) = (settings.evaluation, request.receivers) {
+        blended::values(request, settings, &camera.local(local), &mut values);
+    }
     Ok(values)
 }
 
-/// Whether one set of samples that stands still serves all receivers. A sphere's move with the receiver.
+/// Whether one set of samples serves all receivers from one place. A sphere's move with the receiver, and tiles take them for its own.
 pub(super) fn shares_samples(light: &Light, settings: &DepthComplexity) -> bool {
-    settings.spread == SampleSpread::Correlated && !matches!(light.shape(), LightShape::Sphere { .. })
+    let stands_still =
+        settings.evaluation == Evaluation::Blended || !matches!(light.shape(), LightShape::Sphere { .. });
+    settings.spread == SampleSpread::Correlated && stands_still
 }
 
 /// Whether the visible area answers: it is asked for, it is what visibility is a share of, and its outline fits. A texture's light is in its

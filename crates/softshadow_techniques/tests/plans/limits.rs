@@ -16,6 +16,7 @@ const CORE: Limits = Limits {
     groups: 65_535,
     storage_buffers: 8,
     color_targets: 8,
+    color_bytes: 32,
 };
 
 /// Names of the techniques whose plans a host with so many storage buffers refuses, somewhere in the grid.

@@ -95,6 +95,8 @@ impl Fixture {
             opens_run: true,
             closes_light: true,
             closes_block: true,
+            stage: 0,
+            decision: [0; 4],
             wants: Wants::default(),
             host: Host::default(),
         }
@@ -109,7 +111,8 @@ impl Fixture {
         // First of all stages, first of a block, a middle one, the last.
         let places = [[true, true, true, true], [false, true, false, false], [false; 4], [false, false, true, true]];
         for scene in 0..self.scenes.len() {
-            let served = |receivers: &ReceiverSource<'_>| technique.check_receivers(*receivers).is_ok();
+            let served =
+                |receivers: &ReceiverSource<'_>| technique.check_call(*receivers, &[], &Host::default()).is_ok();
             for receivers in [self.camera(), self.points()].into_iter().filter(served) {
                 let has_all = |index: &usize| !asks || *index < self.occluders[scene].len();
                 for index in (0..self.lights.len()).filter(has_all) {

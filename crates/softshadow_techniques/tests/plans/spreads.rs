@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use softshadow_plan::{Plan, Work};
+use softshadow_plan::{Host, Plan, Work};
 use softshadow_scene::{Camera, LightTexture, MAX_SAMPLES, SamplePattern, SampleSpread};
 use softshadow_techniques::{Block, DepthComplexity, RayTraced, ReceiverSource, Request, Shading, Technique, blocks};
 
@@ -188,12 +188,12 @@ fn what_cannot_interleave_is_named_with_a_way_out() {
     }
     for technique in [traced(16_384, 2), traced(1024, 8), folded(128, 8), folded(256, 5)] {
         assert_eq!(technique.check(), Ok(()));
-        assert_eq!(technique.check_receivers(fixture.camera()), Ok(()));
-        let words = technique.check_receivers(fixture.points()).unwrap_err().to_string();
+        assert_eq!(technique.check_call(fixture.camera(), &fixture.lights, &Host::default()), Ok(()));
+        let words = technique.check_call(fixture.points(), &fixture.lights, &Host::default()).unwrap_err().to_string();
         assert!(words.contains("spread: interleaved averages pixels side by side") && words.contains("'decorrelated'"));
     }
     for technique in both(Decorrelated) {
-        assert_eq!(technique.check_receivers(fixture.points()), Ok(()));
+        assert_eq!(technique.check_call(fixture.points(), &fixture.lights, &Host::default()), Ok(()));
     }
 }
 
