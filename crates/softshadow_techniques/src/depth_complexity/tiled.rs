@@ -24,6 +24,8 @@ const HEAD_BYTES: u64 = 40;
 const CHUNK_BYTES: u64 = 128;
 /// Chunks of lists that a tile and its bundles get on average, together: 3,840 edges and faces.
 const CHUNKS_PER_TILE: u64 = 128;
+/// Chunks beyond that: in a block of few tiles one may have far more than the average of an image.
+const SPARE_CHUNKS: u64 = 4096;
 /// Bytes of `ListCounts`.
 pub(super) const COUNT_BYTES: u64 = 32;
 /// Bytes of `TilePart`.
@@ -60,7 +62,7 @@ fn scattered(items: u32) -> u32 {
 /// Bytes of the lists of a block: their heads, and chunks.
 pub(super) fn list_bytes(request: &Request<'_>) -> u64 {
     let tile_count = tiles(request);
-    u64::from(tile_count) * (2 * HEAD_BYTES + CHUNKS_PER_TILE * CHUNK_BYTES)
+    u64::from(tile_count) * (2 * HEAD_BYTES + CHUNKS_PER_TILE * CHUNK_BYTES) + SPARE_CHUNKS * CHUNK_BYTES
 }
 
 /// Bytes of the first chunk of the faces of every bundle.
