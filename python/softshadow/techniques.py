@@ -124,6 +124,9 @@ class DepthComplexity(Technique):
     exact_area : bool
         Whether the light's visible area answers where the samples show a single layer. With evaluation "blended"
         samples alone answer, and the result's `info["notes"]` say so.
+    silhouettes : {"accurate", "standard"}
+        Which edges count: all that are silhouettes for any part of the light, as rays see them, or those of one point near
+        its middle: fewer, and wrong next to round bodies.
     spread, tile
         As in :class:`RayTraced`, and with the same samples; interleaved, at most 8192 in all sets together. Evaluation
         "blended" knows "correlated" alone.
@@ -153,6 +156,7 @@ class DepthComplexity(Technique):
     seed: int = _DEPTH_COMPLEXITY["seed"]
     passes: int = _DEPTH_COMPLEXITY["passes"]
     exact_area: bool = _DEPTH_COMPLEXITY["exact_area"]
+    silhouettes: str = _DEPTH_COMPLEXITY["silhouettes"]
     spread: str = _DEPTH_COMPLEXITY["spread"]
     tile: int = _DEPTH_COMPLEXITY["tile"]
     evaluation: str = _DEPTH_COMPLEXITY["evaluation"]

@@ -1,8 +1,8 @@
 //! Silhouette edges on the device against shadow rays on the device: the same samples, the same bits; and areas against closed forms.
 
 use softshadow::{
-    Camera, DepthComplexity, Error, Light, LightShape, LightTexture, Options, Receivers, Scene, Technique, Visibility,
-    look_at, measure, procedural, visibility,
+    Camera, DepthComplexity, Error, Light, LightShape, LightTexture, Options, Receivers, Scene, Silhouettes, Technique,
+    Visibility, look_at, measure, procedural, visibility,
 };
 
 use crate::common::{Random, context, lamp, points, ray_traced, rectangle, see, shipped, surface_points};
@@ -76,6 +76,24 @@ fn every_light_and_count_of_samples_has_the_bits_of_rays() {
             }
         }
     }
+}
+
+#[test]
+fn silhouettes_of_one_point_are_fewer_and_wrong() {
+    let scene = bodies();
+    // A light as large as the bodies, near them: what is a silhouette depends on where on the light one stands.
+    let light = [lamp(rectangle(1.6, 1.6), [0.3, 0.2, 1.6])];
+    let floor = points(Random(61).points(4000, [-1.2, 1.2], [-1.2, 1.2], [-0.8, -0.4]));
+    let rays = see(&scene, &light, &floor, &ray_traced(64));
+    let rmse = |silhouettes| {
+        let seen =
+            see(&scene, &light, &floor, &Technique::DepthComplexity(DepthComplexity { silhouettes, ..folded(64) }));
+        let squares = seen.values.iter().zip(&rays.values).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+        ((squares / seen.values.len() as f64).sqrt(), seen.info.silhouette_edges)
+    };
+    let [(accurate, all), (standard, few)] = [Silhouettes::Accurate, Silhouettes::Standard].map(rmse);
+    println!("accurate: RMSE {accurate:.6} with {all} edges in lists; standard: {standard:.4} with {few}");
+    assert!(accurate < 1e-4 && standard > 0.01 && few * 2 < all, "{accurate} {all} {standard} {few}");
 }
 
 #[test]

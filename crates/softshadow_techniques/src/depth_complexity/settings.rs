@@ -30,6 +30,8 @@ pub struct DepthComplexity {
     pub passes: u32,
     /// Whether the light's visible area answers where a single layer hides it; the blended evaluation knows samples alone.
     pub exact_area: bool,
+    /// Which edges count.
+    pub silhouettes: Silhouettes,
     /// Which receivers share a set of samples; the blended evaluation knows one set for all.
     #[serde(with = "spread")]
     pub spread: SampleSpread,
@@ -45,6 +47,16 @@ pub struct DepthComplexity {
     pub base: u32,
     /// Blended only: 1 counts changes as they come, 2 all that add before all that take away.
     pub batches: u32,
+}
+
+/// Which edges count as silhouettes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Silhouettes {
+    /// All that are silhouettes for any part of the light: the answer of rays.
+    Accurate,
+    /// Those of one point near its middle: fewer, and wrong where they end or a round body hides part of the light alone.
+    Standard,
 }
 
 /// How edges find their receivers.
@@ -85,6 +97,7 @@ impl Default for DepthComplexity {
             seed: 0,
             passes: 1,
             exact_area: true,
+            silhouettes: Silhouettes::Accurate,
             spread: SampleSpread::Correlated,
             tile: spread::TILE,
             evaluation: Evaluation::Tiled,

@@ -3,7 +3,7 @@
 use softshadow_plan::{Kernel, Over, Plan, ResourceId};
 
 use super::values::{ClusterRange, FoldSettings, GROUP, MOST_CORNERS, area_answers};
-use super::{DepthComplexity, Reads, Samples};
+use super::{DepthComplexity, Reads, Samples, Silhouettes};
 use crate::parts::occluder_buffers::OccluderContents;
 use crate::request::Request;
 
@@ -36,6 +36,8 @@ pub(super) const SLOT_BYTES: u64 = 16;
 pub(super) const CLUSTER_BYTES: u64 = 32;
 
 const SILHOUETTES: Kernel = Kernel { file: "depth_complexity/silhouettes.wgsl", entry: "silhouettes" };
+const STANDARD_SILHOUETTES: Kernel =
+    Kernel { file: "depth_complexity/silhouettes.wgsl", entry: "standard_silhouettes" };
 const BOUND_CLUSTERS: Kernel = Kernel { file: "depth_complexity/bound_clusters.wgsl", entry: "bound_clusters" };
 const FIND_FACES: Kernel = Kernel { file: "depth_complexity/find_faces.wgsl", entry: "find_faces" };
 const REFERENCE_DEPTH: Kernel = Kernel { file: "depth_complexity/reference_depth.wgsl", entry: "reference_depth" };
@@ -104,7 +106,7 @@ pub(super) fn append_fold(
     let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
     let first_faces = plan.buffer("first faces", first_face_bytes(request));
     append_depths(plan, request, reads, &Stock { faces, face_tree, edges, range, parts, first_faces, lists, counts });
-    append_silhouettes(plan, occluders, reads, &EdgeStock { edges, incident_faces, range, clusters });
+    append_silhouettes(plan, settings, occluders, reads, &EdgeStock { edges, incident_faces, range, clusters });
     let why = "bounds 32 clusters of edges at a time";
     plan.compute("bound clusters", why, BOUND_CLUSTERS, items(clusters_in(cluster_count), 8))
         .bind("cluster_range", range)
@@ -242,10 +244,19 @@ pub(super) fn append_depths(plan: &mut Plan, request: &Request<'_>, reads: &Read
 }
 
 /// Finds the edges that can be silhouettes at all.
-pub(super) fn append_silhouettes(plan: &mut Plan, occluders: &OccluderContents, reads: &Reads, stock: &EdgeStock) {
+pub(super) fn append_silhouettes(
+    plan: &mut Plan,
+    settings: &DepthComplexity,
+    occluders: &OccluderContents,
+    reads: &Reads,
+    stock: &EdgeStock,
+) {
     let cluster_count = occluders.edge_count.div_ceil(CLUSTER);
-    let why = "finds the edges that can be silhouettes over any part of the light";
-    plan.compute("find silhouettes", why, SILHOUETTES, Over::Items { count: cluster_count, work_per_item: 16 })
+    let (kernel, why) = match settings.silhouettes {
+        Silhouettes::Accurate => (SILHOUETTES, "finds the edges that can be silhouettes over any part of the light"),
+        Silhouettes::Standard => (STANDARD_SILHOUETTES, "finds the silhouettes of one point of the light"),
+    };
+    plan.compute("find silhouettes", why, kernel, Over::Items { count: cluster_count, work_per_item: 16 })
         .bind("light_frame", reads.frame)
         .bind("cluster_range", stock.range)
         .bind("edges", stock.edges)

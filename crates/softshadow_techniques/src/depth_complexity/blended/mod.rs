@@ -150,7 +150,7 @@ fn bound(request: &Request<'_>, settings: &DepthComplexity, image: [u32; 2]) -> 
     let canvas = canvas(&mut plan, image);
     plan.clear("no counts", "nothing is counted yet", counts);
     let (edges, incident_faces) = (wedges.edges, wedges.incident_faces);
-    append_silhouettes(&mut plan, occluders, &reads, &EdgeStock { edges, incident_faces, range, clusters });
+    append_silhouettes(&mut plan, settings, occluders, &reads, &EdgeStock { edges, incident_faces, range, clusters });
     plan.clear("no wedges", "no edge is listed yet", wedges.arguments);
     let why = "lists the silhouettes, and counts the corners of their wedges for the draws";
     plan.compute("list wedges", why, APPEND_WEDGES, items(cluster_count, 32))
