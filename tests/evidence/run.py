@@ -78,9 +78,12 @@ def models() -> list[Measured]:
 
 
 def ray_by_ray() -> tuple[list[str], bool]:
-    """Every model against Embree."""
-    results = [against_embree(model) for model in models()]
-    return [line for lines, _ in results for line in lines], all(ok for _, ok in results)
+    """Rays, and silhouette edges in the same place."""
+    parts = [against_embree(model, ss.RayTraced(samples=64)) for model in models()]
+    edges = ss.DepthComplexity(samples=64, exact_area=False)
+    files = ["stanford-bunny.obj", "teapot.obj", "cow.obj", "beetle.obj"]
+    parts += [against_embree(on_ground(file), edges) for file in files]
+    return [line for lines, _ in parts for line in lines], all(ok for _, ok in parts)
 
 
 def time_against_error(rounds: int) -> tuple[list[str], bool]:
@@ -108,13 +111,13 @@ def shipped_scenes(rounds: int, readme: Path) -> tuple[list[str], bool]:
     return [*table, ""], True
 
 
-def against_embree(model: Measured) -> tuple[list[str], bool]:
-    """Both tracers on all pixels that see a surface, 64 samples each."""
+def against_embree(model: Measured, technique: ss.Technique) -> tuple[list[str], bool]:
+    """Both on all pixels that see a surface, 64 samples each."""
     result = ss.visibility(
         model.scene,
         model.light,
         camera=model.camera,
-        technique=ss.RayTraced(samples=64),
+        technique=technique,
         receivers=True,
         sample_masks=True,
         device="software",
@@ -130,7 +133,7 @@ def against_embree(model: Measured) -> tuple[list[str], bool]:
     differing = np.argwhere((ours != theirs) & compared)
     share = len(differing) / max(int(compared.sum()), 1)
     lines = [
-        f"**{model.name}**: {int(compared.sum()):,} rays above the horizon ({int((~compared).sum()):,} below "
+        f"**{model.name}, {technique.name}**: {int(compared.sum()):,} rays above the horizon ({int((~compared).sum()):,} below "
         f"or within 1e-6 of it left out), {len(differing)} differ, "
         f"a share of {share:.1e} (at most {LARGEST_SHARE:.0e}).",
         "",

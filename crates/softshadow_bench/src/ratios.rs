@@ -27,6 +27,30 @@ const FOREST: &str = "depth_complexity:samples=64,exact_area=false";
 pub(crate) const RATIOS: &[Ratio] = &[
     ratio("64 : 16 samples", FOREST, "depth_complexity:samples=16,exact_area=false", "asked < 2, Forest about 5"),
     ratio("256 : 64 samples", "depth_complexity:samples=256,exact_area=false", FOREST, "asked < 3"),
+    ratio(
+        "standard : accurate silhouettes",
+        "depth_complexity:samples=64,exact_area=false,silhouettes=standard",
+        FOREST,
+        "fewer edges, wrong penumbrae",
+    ),
+    ratio(
+        "interleaved : correlated",
+        "depth_complexity:samples=64,exact_area=false,spread=interleaved",
+        FOREST,
+        "Forest about 1",
+    ),
+    ratio(
+        "blended : tiled",
+        "depth_complexity:samples=64,exact_area=false,evaluation=blended,counters=words",
+        FOREST,
+        "",
+    ),
+    ratio(
+        "float : words",
+        "depth_complexity:samples=64,exact_area=false,evaluation=blended,counters=float",
+        "depth_complexity:samples=64,exact_area=false,evaluation=blended,counters=words",
+        "",
+    ),
     ratio("areas : samples", "depth_complexity:samples=64", FOREST, "prototype about 1"),
     ratio(
         "integrated : modulated",
