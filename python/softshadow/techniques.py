@@ -127,6 +127,8 @@ class DepthComplexity(Technique):
     silhouettes : {"accurate", "standard"}
         Which edges count: all that are silhouettes for any part of the light, as rays see them, or those of one point near
         its middle: fewer, and wrong next to round bodies.
+    coverage : {"exact", "table"}
+        How samples beyond an edge are found: looked up and tested next to the edge, or looked up alone, as published.
     spread, tile
         As in :class:`RayTraced`, and with the same samples; interleaved, at most 8192 in all sets together. Evaluation
         "blended" knows "correlated" alone.
@@ -157,6 +159,7 @@ class DepthComplexity(Technique):
     passes: int = _DEPTH_COMPLEXITY["passes"]
     exact_area: bool = _DEPTH_COMPLEXITY["exact_area"]
     silhouettes: str = _DEPTH_COMPLEXITY["silhouettes"]
+    coverage: str = _DEPTH_COMPLEXITY["coverage"]
     spread: str = _DEPTH_COMPLEXITY["spread"]
     tile: int = _DEPTH_COMPLEXITY["tile"]
     evaluation: str = _DEPTH_COMPLEXITY["evaluation"]

@@ -22,11 +22,27 @@
 @group(0) @binding(9) var<storage, read> lists: array<u32>;
 @group(0) @binding(11) var<storage, read_write> counts: ListCounts;
 @group(0) @binding(10) var<storage, read_write> areas: array<u32>;
+@group(0) @binding(15) var<uniform> coverage_table: CoverageTable;
 @group(0) @binding(12) var<uniform> sampling: Sampling;
 @group(0) @binding(13) var<uniform> sample_sets: SampleSets;
 
 struct GroupSamples {
     at: array<vec4<f32>, 64>,
+}
+
+// For the 64 samples: which lie left of a direction, and of a line, by cells of directions and distances. Two words of those that surely do,
+// wherever in the cell, and two of those that may.
+const DIRECTIONS: u32 = 512u;
+const LINE_DIRECTIONS: u32 = 64u;
+const LINE_DISTANCES: u32 = 56u;
+const FARTHEST: f32 = 1.1;
+
+// What is smaller has no direction.
+const TINY: f32 = 1e-30;
+
+struct CoverageTable {
+    directions: array<vec4<u32>, 512>,
+    lines: array<vec4<u32>, 3584>,
 }
 
 struct Outline {
@@ -235,42 +251,70 @@ fn has_steps_left() -> bool {
     return steps == LAST_STEPS;
 }
 
-// Four samples as bits from `k` on. Where samples stand still, each has its place in the uniform, which drivers read once for all lanes.
-fn crossed4(c: Crossing, k: u32) -> u32 {
-    return select(0u, 1u << (k & 31u), crosses(c, group_samples.at[k].xy))
-        | select(0u, 2u << (k & 31u), crosses(c, group_samples.at[k + 1u].xy))
-        | select(0u, 4u << (k & 31u), crosses(c, group_samples.at[k + 2u].xy))
-        | select(0u, 8u << (k & 31u), crosses(c, group_samples.at[k + 3u].xy));
+// Which samples lie left of something: surely, or by a closer look.
+struct Left {
+    surely: vec2<u32>,
+    maybe: vec2<u32>,
 }
 
-fn crossed16(c: Crossing, k: u32) -> u32 {
-    return crossed4(c, k) | crossed4(c, k + 4u) | crossed4(c, k + 8u) | crossed4(c, k + 12u);
+const EVERY: vec2<u32> = vec2<u32>(0xffffffffu);
+
+// A number from 0 to 4 that grows with the angle of a vector, and the sum of its sizes along the axes, which must not be 0.
+fn turn_of(v: vec2<f32>, size: f32) -> f32 {
+    let q = v.y / size;
+    return select(3.0 - q, 1.0 + q, v.x >= 0.0);
 }
 
+fn left_of_direction(v: vec2<f32>) -> Left {
+    let size = abs(v.x) + abs(v.y);
+    let cell = min(u32(turn_of(v, max(size, 1e-37)) * (f32(DIRECTIONS) / 4.0)), DIRECTIONS - 1u);
+    let found = coverage_table.directions[cell];
+    return Left(select(vec2<u32>(0u), found.xy, size > TINY), select(EVERY, found.zw, size > TINY));
+}
+
+fn left_of_line(line: vec3<f32>) -> Left {
+    let size = abs(line.x) + abs(line.y);
+    let turn = turn_of(line.xy, max(size, 1e-37));
+    let direction = min(u32(turn * (f32(LINE_DIRECTIONS) / 4.0)), LINE_DIRECTIONS - 1u);
+    let share = clamp(line.z / max(size, 1e-37) / (2.0 * FARTHEST) + 0.5, 0.0, 1.0);
+    let distance = min(u32(share * f32(LINE_DISTANCES)), LINE_DISTANCES - 1u);
+    let found = coverage_table.lines[direction * LINE_DISTANCES + distance];
+    return Left(select(vec2<u32>(0u), found.xy, size > TINY), select(EVERY, found.zw, size > TINY));
+}
+
+// Samples that stand still are looked up; those near a border are then tested.
 fn crossed_standing(c: Crossing) -> vec2<u32> {
-    return vec2<u32>(crossed16(c, 0u) | crossed16(c, 16u), crossed16(c, 32u) | crossed16(c, 48u));
+    let begin = left_of_direction(c.sector_from);
+    let end = left_of_direction(c.sector_to);
+    let line = left_of_line(c.line);
+    let line_possible = line.surely | line.maybe;
+    let beyond = select(line.surely, ~line_possible, c.beyond_left);
+    let beyond_possible = select(line_possible, ~line.surely, c.beyond_left);
+    var mask = begin.surely & ~(end.surely | end.maybe) & beyond;
+    var open = (begin.surely | begin.maybe) & ~end.surely & beyond_possible & ~mask;
+    while ((open.x | open.y) != 0u) {
+        let is_low = open.x != 0u;
+        let k = firstTrailingBit(select(open.y, open.x, is_low));
+        let found = select(0u, 1u << k, crosses(c, group_samples.at[select(32u + k, k, is_low)].xy));
+        mask |= select(vec2<u32>(0u, found), vec2<u32>(found, 0u), is_low);
+        open = select(vec2<u32>(0u, open.y & (open.y - 1u)), vec2<u32>(open.x & (open.x - 1u), open.y), is_low);
+    }
+    return mask;
 }
 
-fn below4(slope: vec3<f32>, k: u32) -> u32 {
-    return select(0u, 1u << (k & 31u), is_below(slope, group_samples.at[k].xy))
-        | select(0u, 2u << (k & 31u), is_below(slope, group_samples.at[k + 1u].xy))
-        | select(0u, 4u << (k & 31u), is_below(slope, group_samples.at[k + 2u].xy))
-        | select(0u, 8u << (k & 31u), is_below(slope, group_samples.at[k + 3u].xy));
-}
-
-fn below16(slope: vec3<f32>, k: u32) -> u32 {
-    return below4(slope, k) | below4(slope, k + 4u) | below4(slope, k + 8u) | below4(slope, k + 12u);
-}
+// As many steps as the loop above takes at most.
+const MOST_TESTS: u32 = 64u;
 
 fn below_standing(fold: Fold) -> vec2<u32> {
-    var mask = vec2<u32>(0u);
-    var crossing = select(1u, 0u, fold.is_above);
-    while (crossing != 0u) {
-        mask = vec2<u32>(
-            below16(fold.slope, 0u) | below16(fold.slope, 16u),
-            below16(fold.slope, 32u) | below16(fold.slope, 48u),
-        );
-        crossing >>= 1u;
+    let above = left_of_line(fold.slope);
+    var mask = select(~(above.surely | above.maybe), vec2<u32>(0u), fold.is_above);
+    var open = select(above.maybe, vec2<u32>(0u), fold.is_above);
+    while ((open.x | open.y) != 0u) {
+        let is_low = open.x != 0u;
+        let k = firstTrailingBit(select(open.y, open.x, is_low));
+        let found = select(0u, 1u << k, is_below(fold.slope, group_samples.at[select(32u + k, k, is_low)].xy));
+        mask |= select(vec2<u32>(0u, found), vec2<u32>(found, 0u), is_low);
+        open = select(vec2<u32>(0u, open.y & (open.y - 1u)), vec2<u32>(open.x & (open.x - 1u), open.y), is_low);
     }
     return mask;
 }
@@ -445,7 +489,7 @@ fn fold(
         let at = chunk_at(fold.chunk);
         let changes = changes_in(fold.view, fold.receiver.triangle, at);
         fold.sums = fold_standing(fold.sums, fold.view, at, changes);
-        fold.steps += steps_in(at, changes, 0u);
+        fold.steps += steps_in(at, changes, MOST_TESTS);
         fold.chunk = lists[at];
     }
     finish(fold, below_standing(fold));
@@ -468,7 +512,7 @@ fn fold_areas(
         let changes = changes_in(fold.view, fold.receiver.triangle, at);
         fold.sums = fold_standing(fold.sums, fold.view, at, changes);
         area += area_in(fold.view, at, changes);
-        fold.steps += steps_in(at, changes, light_frame.outline_count);
+        fold.steps += steps_in(at, changes, MOST_TESTS + light_frame.outline_count);
         fold.chunk = lists[at];
     }
     finish_area(fold, area, below_standing(fold));

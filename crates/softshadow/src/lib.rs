@@ -37,7 +37,7 @@ pub use softshadow_scene::{
     Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, SamplePattern,
     SampleSpread, Scene, SceneError, UpAxis, look_at, procedural, scene_file,
 };
-pub use softshadow_techniques::depth_complexity::{Counters, Evaluation, InitialCounts, Silhouettes};
+pub use softshadow_techniques::depth_complexity::{Counters, Coverage, Evaluation, InitialCounts, Silhouettes};
 pub use softshadow_techniques::{DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError};
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};
 

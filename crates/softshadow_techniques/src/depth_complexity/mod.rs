@@ -14,7 +14,8 @@
 //!
 //! **Parameters.** `samples` a pass, up to 256; `pattern`, `seed`, `passes`, `spread`, `tile` as for `ray_traced`, with the same sets for
 //! the same receivers, but interleaved sets of at most 8,192 samples together; `exact_area` and `spread`, tiled only; `silhouettes`, all of
-//! the light's (`accurate`) or those of one point (`standard`); `evaluation`.
+//! the light's (`accurate`) or those of one point (`standard`); `coverage`, `exact` or as published
+//! by `table`, for samples that stand still; `evaluation`.
 //! Blended only: `initial_counts`, `rays` or the paper's `z_fail`; `counters`, `words` by atomics or the paper's `float` targets; `base`,
 //! the smallest base of a digit; `batches`, 1 or the paper's 2, outer wedges before inner ones. A first draw bounds every receiver's
 //! counters, and digits are as wide as the bounds demand: nothing overflows. One batch is the default: where digits are chosen by the
@@ -26,11 +27,13 @@
 //! wider suns, whose measure is solid angle, and for no light of a call in which any has a texture. Samples are off as for `ray_traced`, and
 //! averages of interleaved ones leave what areas answered alone. Foliage has no surface to take silhouettes of: every leaf's border is an
 //! edge, lists grow long, and the call ends with an error that names `ray_traced`. Triangles that touch a sphere light are refused.
+//! `table` puts samples within a cell of an edge on either side of it: some in a thousand.
 //! `standard` silhouettes are for comparison: a round body's penumbra is too narrow, and counts do not close.
 //! Blended: points are refused, and so are receivers that stand half a pixel from the middle of theirs, on triangles thinner than a pixel.
 //! `z_fail` decides by rasterised depth what lies behind a receiver, which contradicts the edges for about 1 receiver of 7,000.
 
 pub mod blended;
+mod coverage_table;
 mod order;
 mod settings;
 mod tiled;
@@ -41,7 +44,7 @@ use softshadow_plan::{Kernel, Origin, Over, Pass, Plan, ResourceId, Shape};
 use crate::parts::resolve::{BLOCKED, Masks};
 use crate::parts::{light_buffers, receivers, resolve};
 use crate::request::{ReceiverSource, Request};
-pub use settings::{Counters, DepthComplexity, Evaluation, InitialCounts, Silhouettes};
+pub use settings::{Counters, Coverage, DepthComplexity, Evaluation, InitialCounts, Silhouettes};
 pub use tiled::LIST_COUNTS;
 use tiled::{SLOT_BYTES, TILE, tiles};
 pub(crate) use values::values;

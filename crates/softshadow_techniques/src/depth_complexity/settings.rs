@@ -32,6 +32,8 @@ pub struct DepthComplexity {
     pub exact_area: bool,
     /// Which edges count.
     pub silhouettes: Silhouettes,
+    /// How samples beyond an edge are found, where all receivers share samples that stand still.
+    pub coverage: Coverage,
     /// Which receivers share a set of samples; the blended evaluation knows one set for all.
     #[serde(with = "spread")]
     pub spread: SampleSpread,
@@ -47,6 +49,16 @@ pub struct DepthComplexity {
     pub base: u32,
     /// Blended only: 1 counts changes as they come, 2 all that add before all that take away.
     pub batches: u32,
+}
+
+/// How samples beyond an edge are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Coverage {
+    /// Looked up, and tested where they lie near the edge: as tests of all would say.
+    Exact,
+    /// Looked up alone, as published: samples near an edge may count for its other side.
+    Table,
 }
 
 /// Which edges count as silhouettes.
@@ -98,6 +110,7 @@ impl Default for DepthComplexity {
             passes: 1,
             exact_area: true,
             silhouettes: Silhouettes::Accurate,
+            coverage: Coverage::Exact,
             spread: SampleSpread::Correlated,
             tile: spread::TILE,
             evaluation: Evaluation::Tiled,
@@ -128,6 +141,10 @@ impl DepthComplexity {
         }
         if self.evaluation == Evaluation::Blended && self.spread != SampleSpread::Correlated {
             return fail("spread", "must be 'correlated' for evaluation 'blended'; use 'tiled'".into());
+        }
+        let looks_up = self.evaluation == Evaluation::Tiled && self.spread == SampleSpread::Correlated;
+        if self.coverage == Coverage::Table && !looks_up {
+            return fail("coverage", "'table' needs evaluation 'tiled' and spread 'correlated'; use 'exact'".into());
         }
         spread::check("depth_complexity", &self.sampling(0), SET_SAMPLES)?;
         let defaults = Self::default();

@@ -2,6 +2,7 @@
 
 use softshadow_plan::{Kernel, Over, Plan, ResourceId};
 
+use super::coverage_table::TABLE_BYTES;
 use super::values::{ClusterRange, FoldSettings, GROUP, MOST_CORNERS, area_answers};
 use super::{DepthComplexity, Reads, Samples, Silhouettes};
 use crate::parts::occluder_buffers::OccluderContents;
@@ -150,8 +151,11 @@ pub(super) fn append_fold(
             None => (plain, "adds up what changes at each edge for 64 samples"),
         };
         let fold_settings = plan.parameter(format!("fold settings {group}"), size_of::<FoldSettings>() as u64);
-        let group_samples = match reads.samples {
-            Samples::Shared(_) => Some(plan.parameter(format!("group samples {group}"), u64::from(GROUP) * 16)),
+        let standing = match reads.samples {
+            Samples::Shared(_) => Some([
+                plan.parameter(format!("group samples {group}"), u64::from(GROUP) * 16),
+                plan.parameter(format!("coverage table {group}"), TABLE_BYTES),
+            ]),
             Samples::Own { .. } => None,
         };
         let outline = areas.map(|_| plan.parameter("light outline", MOST_CORNERS as u64 * 16));
@@ -165,9 +169,9 @@ pub(super) fn append_fold(
             .bind("lists", lists)
             .bind("blocked", reads.blocked)
             .bind("counts", counts);
-        match group_samples {
-            Some(group_samples) => {
-                pass.bind("group_samples", group_samples);
+        match standing {
+            Some([group_samples, table]) => {
+                pass.bind("group_samples", group_samples).bind("coverage_table", table);
             }
             None => reads.samples.bind(pass),
         }

@@ -3,6 +3,7 @@
 use softshadow_plan::Values;
 use softshadow_scene::{Light, LightFrame, LightKind, LightShape, Outline, SampleSpread};
 
+use super::coverage_table::coverage_table;
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
 use super::{DepthComplexity, Evaluation, blended};
@@ -115,8 +116,10 @@ pub(crate) fn values(
         values.insert(format!("fold settings {group}"), bytemuck::bytes_of(&fold).to_vec());
         if shared {
             let first = (group * GROUP) as usize;
-            let group_samples = padded(&placed[first..first + here as usize], GROUP as usize);
-            values.insert(format!("group samples {group}"), group_samples);
+            let samples = &placed[first..first + here as usize];
+            values.insert(format!("group samples {group}"), padded(samples, GROUP as usize));
+            let table = coverage_table(samples, settings.coverage);
+            values.insert(format!("coverage table {group}"), bytemuck::cast_slice(&table).to_vec());
         }
     }
     if !shared {

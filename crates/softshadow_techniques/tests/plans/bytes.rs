@@ -164,6 +164,8 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                     add(format!("fold settings {group}"), 16);
                     if shared {
                         add(format!("group samples {group}"), 64 * 16);
+                        // The largest uniform that core WebGPU has.
+                        add(format!("coverage table {group}"), 65_536);
                     }
                 }
                 let outline = LightFrame::new(request.light, &request.scene.local.frame).outline;

@@ -548,7 +548,7 @@ fn passes_of_one_light_differ_in_their_values_alone() {
         ),
         (
             Technique::DepthComplexity(DepthComplexity { passes: 3, ..DepthComplexity::default() }),
-            &["frame samples", "group samples 0", "light", "light samples", "sampling"],
+            &["coverage table 0", "frame samples", "group samples 0", "light", "light samples", "sampling"],
         ),
     ] {
         let values = |pass| technique.values(&request, &fixture.lights[0], pass).unwrap();
