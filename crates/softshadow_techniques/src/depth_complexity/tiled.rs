@@ -126,7 +126,6 @@ pub(super) fn append_fold(
     let size = plan.buffer("fold dispatch", 12);
     let narrow_size = plan.buffer("narrow dispatch", 12);
     plan.compute("size fold", "sizes the dispatches over the tiles that have edges", SIZE_FOLD, items(1, 1))
-        .bind("light_frame", reads.frame)
         .bind("counts", counts)
         .bind("dispatch_size", size)
         .bind("narrow_size", narrow_size);
