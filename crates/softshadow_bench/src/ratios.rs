@@ -28,6 +28,12 @@ pub(crate) const RATIOS: &[Ratio] = &[
     ratio("64 : 16 samples", FOREST, "depth_complexity:samples=16,exact_area=false", "asked < 2, Forest about 5"),
     ratio("256 : 64 samples", "depth_complexity:samples=256,exact_area=false", FOREST, "asked < 3"),
     ratio(
+        "table : exact coverage",
+        "depth_complexity:samples=64,exact_area=false,coverage=table",
+        FOREST,
+        "Forest 0.67 to 0.75",
+    ),
+    ratio(
         "standard : accurate silhouettes",
         "depth_complexity:samples=64,exact_area=false,silhouettes=standard",
         FOREST,

@@ -1,8 +1,8 @@
 //! Silhouette edges on the device against shadow rays on the device: the same samples, the same bits; and areas against closed forms.
 
 use softshadow::{
-    Camera, DepthComplexity, Error, Light, LightShape, LightTexture, Options, Receivers, Scene, Silhouettes, Technique,
-    Visibility, look_at, measure, procedural, visibility,
+    Camera, Coverage, DepthComplexity, Error, Light, LightShape, LightTexture, Options, Receivers, Scene, Silhouettes,
+    Technique, Visibility, look_at, measure, procedural, visibility,
 };
 
 use crate::common::{Random, context, lamp, points, ray_traced, rectangle, see, shipped, surface_points};
@@ -75,6 +75,22 @@ fn every_light_and_count_of_samples_has_the_bits_of_rays() {
                 assert!(differ <= samples / 64 + 1, "{:?}, {samples} samples: {differ} differ", light.shape());
             }
         }
+    }
+}
+
+#[test]
+fn tables_as_published_move_samples_near_edges() {
+    let (scene, floor) = (bodies(), points(Random(62).points(4000, [-1.5, 1.5], [-1.5, 1.5], [-1.0, -0.4])));
+    for light in &lights()[..3] {
+        let masks = |coverage| {
+            let technique = Technique::DepthComplexity(DepthComplexity { coverage, ..folded(64) });
+            see(&scene, std::slice::from_ref(light), &floor, &technique).masks.unwrap().bits
+        };
+        let pairs = masks(Coverage::Exact).into_iter().zip(masks(Coverage::Table));
+        let moved: u32 = pairs.map(|(a, b)| (a ^ b).count_ones()).sum();
+        println!("{:?}: {moved} of {} samples move", light.shape(), 4000 * 64);
+        // A cell spans a thirtieth of the light's width; a third of these receivers see an edge.
+        assert!((20..4000 * 64 / 100).contains(&moved), "{:?}: {moved} samples move", light.shape());
     }
 }
 
@@ -182,6 +198,11 @@ fn areas_answer_without_noise() {
         partly += usize::from(truth > 0.0 && truth < 1.0);
     }
     assert!(partly > 500 && seen.info.area_receivers > partly as u64 / 2, "{partly} {:?}", seen.info.area_receivers);
+    // However many samples, a receiver is answered once.
+    let light = lamp(rectangle(1.0, 0.8), [0.15, -0.1, 2.0]);
+    let fine = Technique::DepthComplexity(DepthComplexity { samples: 256, ..DepthComplexity::default() });
+    let fine = see(&shade, &[light], &points(floor.clone()), &fine);
+    assert!(fine.info.area_receivers.abs_diff(seen.info.area_receivers) < 400, "{}", fine.info.area_receivers);
     // Samples alone are far off.
     let light = lamp(rectangle(1.0, 0.8), [0.15, -0.1, 2.0]);
     let sampled = see(&shade, &[light], &points(floor), &Technique::DepthComplexity(folded(64)));
