@@ -14,6 +14,7 @@ mod light_frame;
 mod light_samples;
 mod local;
 mod mesh;
+mod moved;
 mod receivers;
 mod scene;
 
@@ -26,5 +27,6 @@ pub use light_frame::{LightFrame, LightKind, Outline};
 pub use light_samples::{LightSamples, MAX_SAMPLES, SamplePattern, pass_seed, sample_positions, unit_square};
 pub use local::{Corner, Dropped, LocalScene, SubScene, occluder_bounds};
 pub use mesh::{MAX_TRIANGLES, Material, Mesh};
+pub use moved::{Rebuild, STRETCH_LIMIT};
 pub use receivers::{LocalPoint, Points, Receivers};
 pub use scene::Scene;
