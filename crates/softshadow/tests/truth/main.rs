@@ -17,6 +17,7 @@ mod depth_complexity;
 mod hard_shadows;
 mod invariance;
 mod lights;
+mod moving;
 mod pixels;
 mod same_samples;
 mod samples;
