@@ -59,6 +59,14 @@ class RayTraced(Technique):
         Sets of samples that are averaged, each with a seed of its own.
     probes : int
         Samples that are traced first; all others follow only where the neighbourhood disagrees. 0 traces all.
+    spread : {"correlated", "decorrelated", "interleaved"}
+        Who shares samples. Correlated: all receivers have one set, and penumbrae show its steps. Decorrelated: every
+        receiver takes one of many stratified sets, and steps become noise. Interleaved, for cameras: the pixels of a
+        square have sets that together are one stratified set, and pixels side by side are averaged where they see one
+        surface; less noise for the same samples, and shadows blurred by half of `tile`, of which
+        the standard error knows nothing.
+    tile : int
+        Side of that square, 2 to 8.
 
     Raises
     ------
@@ -72,6 +80,8 @@ class RayTraced(Technique):
     seed: int = _RAY_TRACED["seed"]
     passes: int = _RAY_TRACED["passes"]
     probes: int = _RAY_TRACED["probes"]
+    spread: str = _RAY_TRACED["spread"]
+    tile: int = _RAY_TRACED["tile"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,6 +123,8 @@ class DepthComplexity(Technique):
         Sets of samples that are averaged, each with a seed of its own.
     exact_area : bool
         Whether the light's visible area answers where the samples show a single layer.
+    spread, tile
+        As in :class:`RayTraced`, and with the same samples; interleaved, at most 8192 in all sets together.
 
     Raises
     ------
@@ -126,6 +138,8 @@ class DepthComplexity(Technique):
     seed: int = _DEPTH_COMPLEXITY["seed"]
     passes: int = _DEPTH_COMPLEXITY["passes"]
     exact_area: bool = _DEPTH_COMPLEXITY["exact_area"]
+    spread: str = _DEPTH_COMPLEXITY["spread"]
+    tile: int = _DEPTH_COMPLEXITY["tile"]
 
 
 TECHNIQUES: dict[str, type[Technique]] = {kind.name: kind for kind in (RayTraced, HardShadowMap, DepthComplexity)}

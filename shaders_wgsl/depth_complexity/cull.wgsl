@@ -265,8 +265,9 @@ fn narrow(
         chunk = lists[at];
     }
     close(list);
-    lists[HEAD * position + 2u + bundle] = list.first;
-    if (list.full || !has_steps_left()) {
+    // Where there is no room, the whole tile's list serves the bundle as well.
+    lists[HEAD * position + 2u + bundle] = select(list.first, lists[HEAD * position + 1u], list.full);
+    if (!has_steps_left()) {
         atomicAdd(&counts.unfinished, bounds.receiver_count);
     }
 }

@@ -74,11 +74,12 @@ fn trace(
     let pad = vec3<f32>(box_pad(receiver.position));
     let walk = vec2<u32>(candidate.first_node, candidate.last_node);
     let unbounded = light.kind == LIGHT_SUN;
+    let own = first_sample(sampling, index);
     for (var sample = first; sample < end; sample++) {
         let word = index * sampling.words + sample / 32u;
         let bit = 1u << (sample % 32u);
         if ((atomicLoad(&blocked[word]) & bit) == 0u) {
-            let way = light_way(light_sample(light, view, light_samples[sample], receiver.position), receiver.position);
+            let way = light_way(light_sample(light, view, light_samples[own + sample], receiver.position), receiver.position);
             if (is_blocked(receiver, way, unbounded, walk, pad)) {
                 atomicOr(&blocked[word], bit);
             }

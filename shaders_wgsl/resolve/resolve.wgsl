@@ -3,6 +3,7 @@
 //#import shared/slice.wgsl
 //#import shared/receiver.wgsl
 //#import shared/samples.wgsl
+//#import shared/continuity.wgsl
 
 @group(0) @binding(0) var<uniform> slice: Slice;
 @group(0) @binding(1) var<uniform> sampling: Sampling;
@@ -12,16 +13,25 @@
 @group(0) @binding(5) var<storage, read_write> standard_error: array<f32>;
 @group(0) @binding(6) var<storage, read> sample_radiance: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read> areas: array<u32>;   // a float, with its sign set where it answers
+@group(0) @binding(8) var<uniform> interleaving: Interleaving;
+@group(0) @binding(9) var<storage, read> receivers: array<Receiver>;
+@group(0) @binding(10) var<storage, read_write> pass_values: array<vec4<f32>>;
+
+// What one pass says of one receiver.
+struct Answer {
+    value: vec3<f32>,    // by channel; the first one alone without textures
+    known: f32,          // samples that it stands on; 0 where an area answered
+}
+
+fn binomial_error(value: f32, known: f32) -> f32 {
+    // One sample says nothing about its own error, which is at most a half.
+    return select(sqrt(max(value * (1.0 - value), 0.0) / (max(known, 2.0) - 1.0)), 0.5, known < 2.0);
+}
 
 // Welford's update of mean and standard error with the value of one more pass. The standard error's slot holds the sum of
 // squared deviations until the last pass.
-fn accumulate(slot: u32, value: f32, known: u32) {
-    accumulate_with_error(slot, value, binomial_error(value, known));
-}
-
-fn binomial_error(value: f32, known: u32) -> f32 {
-    // One sample says nothing about its own error, which is at most a half.
-    return select(sqrt(max(value * (1.0 - value), 0.0) / f32(max(known, 2u) - 1u)), 0.5, known < 2u);
+fn accumulate(slot: u32, value: f32, known: f32) {
+    accumulate_with_error(slot, value, select(binomial_error(value, known), 0.0, known == 0.0));
 }
 
 // `single` is the error of one pass alone.
@@ -53,51 +63,33 @@ fn mask_word(index: u32, word: u32, known: u32) -> u32 {
     return blocked[index * sampling.words + word] & (0xffffffffu >> (32u - bits));
 }
 
-@compute @workgroup_size(64)
-fn resolve(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    if (invocation.x >= slice.count) {
-        return;
-    }
-    let index = slice.first + invocation.x;
-    let known = known_samples(index);
+fn hidden_samples(index: u32, known: u32) -> u32 {
     var hidden = 0u;
     for (var word = 0u; 32u * word < known; word++) {
         hidden += countOneBits(mask_word(index, word, known));
     }
-    accumulate(index, 1.0 - f32(hidden) / f32(known), known);
+    return hidden;
+}
+
+fn answer_of_samples(index: u32) -> Answer {
+    let known = known_samples(index);
+    return Answer(vec3<f32>(1.0 - f32(hidden_samples(index, known)) / f32(known)), f32(known));
 }
 
 // Where the visible area of the light is known it answers, without noise; elsewhere samples do.
-@compute @workgroup_size(64)
-fn resolve_areas(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    if (invocation.x >= slice.count) {
-        return;
-    }
-    let index = slice.first + invocation.x;
-    var hidden = 0u;
-    for (var word = 0u; 32u * word < sampling.count; word++) {
-        hidden += countOneBits(mask_word(index, word, sampling.count));
-    }
-    let sampled = 1.0 - f32(hidden) / f32(sampling.count);
+fn answer_of_area(index: u32) -> Answer {
+    let sampled = 1.0 - f32(hidden_samples(index, sampling.count)) / f32(sampling.count);
     // Twice the largest error seen for stratified samples of a half plane.
     let bound = 2.0 * pow(f32(sampling.count), -0.75);
     let area = bitcast<f32>(areas[index] & 0x7fffffffu);
     let by_area = (areas[index] >> 31u) != 0u && abs(area - sampled) <= bound;
-    accumulate_with_error(
-        index,
-        select(sampled, area, by_area),
-        select(binomial_error(sampled, sampling.count), 0.0, by_area),
-    );
+    return Answer(vec3<f32>(select(sampled, area, by_area)), select(f32(sampling.count), 0.0, by_area));
 }
 
 // Textured light: V = Σ L·visible / Σ L by channel; a channel without light returns the share of area.
-@compute @workgroup_size(64)
-fn resolve_textured(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    if (invocation.x >= slice.count) {
-        return;
-    }
-    let index = slice.first + invocation.x;
+fn answer_of_texture(index: u32) -> Answer {
     let known = known_samples(index);
+    let first = first_sample(sampling, index);
     var seen = vec3<f32>(0.0);
     var whole = vec3<f32>(0.0);
     var hidden = 0u;
@@ -105,14 +97,105 @@ fn resolve_textured(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let mask = mask_word(index, word, known);
         hidden += countOneBits(mask);
         for (var bit = 0u; bit < min(32u, known - 32u * word); bit++) {
-            let radiance = sample_radiance[32u * word + bit].xyz;
+            let radiance = sample_radiance[first + 32u * word + bit].xyz;
             whole += radiance;
             seen += select(radiance, vec3<f32>(0.0), (mask & (1u << bit)) != 0u);
         }
     }
     let by_area = vec3<f32>(1.0 - f32(hidden) / f32(known));
-    let value = select(by_area, seen / max(whole, vec3<f32>(1e-37)), whole > vec3<f32>(0.0));
-    accumulate(3u * index, value.x, known);
-    accumulate(3u * index + 1u, value.y, known);
-    accumulate(3u * index + 2u, value.z, known);
+    return Answer(select(by_area, seen / max(whole, vec3<f32>(1e-37)), whole > vec3<f32>(0.0)), f32(known));
+}
+
+fn accumulate_channels(index: u32, answer: Answer) {
+    accumulate(3u * index, answer.value.x, answer.known);
+    accumulate(3u * index + 1u, answer.value.y, answer.known);
+    accumulate(3u * index + 2u, answer.value.z, answer.known);
+}
+
+@compute @workgroup_size(64)
+fn resolve(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x < slice.count) {
+        let answer = answer_of_samples(slice.first + invocation.x);
+        accumulate(slice.first + invocation.x, answer.value.x, answer.known);
+    }
+}
+
+@compute @workgroup_size(64)
+fn resolve_areas(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x < slice.count) {
+        let answer = answer_of_area(slice.first + invocation.x);
+        accumulate(slice.first + invocation.x, answer.value.x, answer.known);
+    }
+}
+
+@compute @workgroup_size(64)
+fn resolve_textured(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x < slice.count) {
+        accumulate_channels(slice.first + invocation.x, answer_of_texture(slice.first + invocation.x));
+    }
+}
+
+// The same, kept for `interleave`.
+
+fn keep(index: u32, answer: Answer) {
+    pass_values[index] = vec4<f32>(answer.value, answer.known);
+}
+
+@compute @workgroup_size(64)
+fn keep_samples(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x < slice.count) {
+        keep(slice.first + invocation.x, answer_of_samples(slice.first + invocation.x));
+    }
+}
+
+@compute @workgroup_size(64)
+fn keep_areas(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x < slice.count) {
+        keep(slice.first + invocation.x, answer_of_area(slice.first + invocation.x));
+    }
+}
+
+@compute @workgroup_size(64)
+fn keep_textured(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x < slice.count) {
+        keep(slice.first + invocation.x, answer_of_texture(slice.first + invocation.x));
+    }
+}
+
+// Averages over the pixels side by side whose samples make up one set, where they see one surface. What an area answered stays.
+@compute @workgroup_size(64)
+fn interleave(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x >= slice.count) {
+        return;
+    }
+    let index = slice.first + invocation.x;
+    let receiver = receivers[index];
+    let own = pass_values[index];
+    let size = vec2<i32>(vec2<u32>(interleaving.width, interleaving.height));
+    let here = vec2<i32>(vec2<u32>(index % interleaving.width, index / interleaving.width));
+    let reach = i32(interleaving.tile / 2u);
+    var sum = vec3<f32>(0.0);
+    var total = 0.0;
+    var squares = 0.0;
+    for (var y = max(here.y - reach, 0); y <= min(here.y + reach, size.y - 1); y++) {
+        for (var x = max(here.x - reach, 0); x <= min(here.x + reach, size.x - 1); x++) {
+            let other = u32(y * size.x + x);
+            let is_one = other == index || is_continuous(receiver, receivers[other], interleaving.eye);
+            let box = share_of_box(x - here.x, interleaving.tile) * share_of_box(y - here.y, interleaving.tile);
+            let weight = select(0.0, box, is_one);
+            let answer = pass_values[other];
+            sum += weight * answer.xyz;
+            total += weight;
+            squares += select(0.0, weight * weight / max(answer.w, 1.0), answer.w > 0.0);
+        }
+    }
+    let by_area = own.w == 0.0;
+    // As many independent samples as would vary as much as the average does.
+    let known = select(total * total / max(squares, 1e-30), 0.0, by_area);
+    let averaged = Answer(select(sum / total, own.xyz, by_area), known);
+    if (interleaving.channels == 3u) {
+        accumulate_channels(index, averaged);
+    } else {
+        accumulate(index, averaged.value.x, averaged.known);
+    }
 }

@@ -85,11 +85,12 @@ fn integrated(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let known = decided[index];
     // Where only probes were traced they agree, and speak for all samples.
     let all_dark = known < sampling.count && known > 0u && (blocked[index * sampling.words] & 1u) != 0u;
+    let first = first_sample(sampling, index);
     var sum = vec3<f32>(0.0);
     for (var sample = 0u; sample < select(sampling.count, 0u, all_dark); sample++) {
         let mask = blocked[index * sampling.words + sample / 32u];
         let hidden = (mask & (1u << (sample % 32u))) != 0u;
-        sum += select(sample_contribution(receiver, view, sample, material), vec3<f32>(0.0), hidden);
+        sum += select(sample_contribution(receiver, view, first + sample, material), vec3<f32>(0.0), hidden);
     }
     add_color(index, sum);
 }
@@ -107,6 +108,7 @@ fn modulated(@builtin(global_invocation_id) invocation: vec3<u32>) {
     }
     let material = materials[triangle_materials[receiver.triangle]];
     let view = light_view(light, receiver.position);
+    // Without shadow there is nothing to decorrelate: the first set serves all.
     var sum = vec3<f32>(0.0);
     for (var sample = 0u; sample < select(0u, sampling.count, view.exists); sample++) {
         sum += sample_contribution(receiver, view, sample, material);

@@ -183,6 +183,22 @@ NONSENSE = [
     (lambda: ss.light_points(LIGHT, 0, scene=SCENE), ss.SettingsError, "samples"),
     (lambda: ss.light_points(LIGHT, 10**6, scene=SCENE), ss.SceneError, "samples"),
     (lambda: ss.light_points(LIGHT, 4, scene=SCENE, pattern="x"), ss.SettingsError, "pattern"),
+    (lambda: ss.light_points(LIGHT, 4, CARD, scene=SCENE, spread="x"), ss.SettingsError, "spread"),
+    (lambda: ss.light_points(LIGHT, 4, scene=SCENE, spread="decorrelated"), ss.SceneError, "receivers"),
+    (lambda: ss.light_points(LIGHT, 4, CARD, scene=SCENE, spread="interleaved"), ss.SettingsError, "image's pixels"),
+    (
+        lambda: ss.light_points(LIGHT, 4, CARD[None], scene=SCENE, spread="interleaved", tile=0),
+        ss.SceneError,
+        "samples",
+    ),
+    (lambda: ss.RayTraced(spread="mixed"), ss.SettingsError, "'mixed' is none of 'correlated'"),
+    (lambda: ss.RayTraced(tile=9), ss.SettingsError, "between 2 and 8, got 9"),
+    (lambda: ss.DepthComplexity(samples=256, spread="interleaved", tile=6), ss.SettingsError, "smaller tile"),
+    (
+        lambda: visibility(SCENE, LIGHT, points=CARD, technique=ss.RayTraced(spread="interleaved")),
+        ss.SettingsError,
+        "ray_traced spread: interleaved.*give a camera",
+    ),
     (
         lambda: ss.light_points(ss.SphereLight(radius=1, world_from_light=POSE), 4, scene=SCENE),
         ss.SceneError,

@@ -35,8 +35,8 @@ pub use render::{Picture, PictureOptions, render};
 pub use softshadow_engine::{AdapterInfo, DeviceKind, PassTime, Timing};
 pub use softshadow_measure as measure;
 pub use softshadow_scene::{
-    Camera, Dropped, Light, LightShape, LightTexture, Material, Mesh, Points, Receivers, STRETCH_LIMIT, SamplePattern,
-    Scene, SceneError, UpAxis, look_at, procedural, scene_file,
+    Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, STRETCH_LIMIT,
+    SamplePattern, SampleSpread, Scene, SceneError, UpAxis, look_at, procedural, scene_file,
 };
 pub use softshadow_techniques::{DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError};
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};

@@ -7,6 +7,7 @@ use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::depth_complexity::LIST_COUNTS;
 use softshadow_techniques::parts::VISIBILITY;
+use softshadow_techniques::parts::interleaving::NOISY_BYTES;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
 use softshadow_techniques::parts::resolve::{BLOCKED, STANDARD_ERROR};
 use softshadow_techniques::parts::shading::COLOR;
@@ -130,6 +131,11 @@ pub(crate) fn run(
     on_progress: Progress<'_>,
 ) -> Result<(Visibility, Vec<[f32; 4]>), Error> {
     technique.check()?;
+    let source = match receivers {
+        Receivers::Camera(camera) => ReceiverSource::Camera(camera),
+        Receivers::Points(points) => ReceiverSource::Points(points),
+    };
+    technique.check_receivers(source)?;
     if lights.is_empty() {
         return Err(Error::Settings("at least one light is needed".into()));
     }
@@ -151,10 +157,6 @@ pub(crate) fn run(
     if receivers.count() == 0 || sees_nothing {
         return Ok(collector.finish(RunReport::default()));
     }
-    let source = match receivers {
-        Receivers::Camera(camera) => ReceiverSource::Camera(camera),
-        Receivers::Points(points) => ReceiverSource::Points(points),
-    };
     let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
     let most = receivers_per_block(
         technique,
@@ -232,8 +234,9 @@ fn receivers_per_block(
     let technique_bytes = technique.bytes_per_receiver(channels as u64, sub_scenes as u64);
     // Rays of a block are bounded, so that a dispatch over them ends in time and a caller can stop between blocks.
     let most_for_rays = RAYS_PER_BLOCK / u64::from(technique.samples()).max(1);
-    // The receiver, the point it came from, and the picture's colour.
-    let each = 2 * RECEIVER_BYTES + technique_bytes + if picture { 16 } else { 0 };
+    // The receiver, the point it came from, and the picture's colour, before and after it is averaged.
+    let colors = if technique.interleaves() { 16 + NOISY_BYTES } else { 16 };
+    let each = 2 * RECEIVER_BYTES + technique_bytes + if picture { colors } else { 0 };
     let largest_buffer = technique_bytes.max(RECEIVER_BYTES);
     let binding = host.limits.storage_binding_bytes.min(host.limits.buffer_bytes);
     let most = (options.memory_limit_bytes / each).min(binding / largest_buffer).min(1 << 30) as usize;

@@ -16,6 +16,7 @@ mod local;
 mod mesh;
 mod moved;
 mod receivers;
+mod sample_sets;
 mod scene;
 
 pub use bvh::{Bvh, BvhNode};
@@ -29,4 +30,5 @@ pub use local::{Corner, Dropped, LocalScene, SubScene, occluder_bounds};
 pub use mesh::{MAX_TRIANGLES, Material, Mesh};
 pub use moved::{Rebuild, STRETCH_LIMIT};
 pub use receivers::{LocalPoint, Points, Receivers};
+pub use sample_sets::{LightSampling, MAX_INTERLEAVED, SampleSpread};
 pub use scene::Scene;

@@ -12,7 +12,7 @@ mod request;
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Plan, Values};
-use softshadow_scene::{Light, SceneError};
+use softshadow_scene::{Light, SampleSpread, SceneError};
 
 pub use block::{Block, blocks};
 pub use depth_complexity::DepthComplexity;
@@ -20,6 +20,7 @@ pub use hard_shadow_map::HardShadowMap;
 pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
 pub use parts::shading::Shading;
+use parts::spread;
 pub use program::{StageTask, VisibilityProgram};
 pub use ray_traced::RayTraced;
 pub use request::{ReceiverSource, Request, Wants};
@@ -95,6 +96,24 @@ impl Technique {
         }
     }
 
+    /// Checks that it can serve such receivers.
+    ///
+    /// # Errors
+    /// [`TechniqueError::Setting`] names the setting that needs others.
+    pub fn check_receivers(&self, receivers: ReceiverSource<'_>) -> Result<(), TechniqueError> {
+        spread::check_receivers(self.name(), self.interleaves(), receivers)
+    }
+
+    /// Whether pixels are averaged with their neighbours.
+    #[must_use]
+    pub fn interleaves(&self) -> bool {
+        match self {
+            Self::RayTraced(settings) => settings.spread == SampleSpread::Interleaved,
+            Self::DepthComplexity(settings) => settings.spread == SampleSpread::Interleaved,
+            Self::HardShadowMap(_) => false,
+        }
+    }
+
     /// Progressive passes that one light takes.
     #[must_use]
     pub fn passes(&self) -> u32 {
@@ -119,8 +138,9 @@ impl Technique {
     #[must_use]
     pub fn halo_rows(&self) -> u32 {
         match self {
-            Self::RayTraced(settings) => u32::from(settings.probes > 0),
-            Self::HardShadowMap(_) | Self::DepthComplexity(_) => 0,
+            Self::RayTraced(settings) => settings.halo_rows(),
+            Self::DepthComplexity(settings) => settings.halo_rows(),
+            Self::HardShadowMap(_) => 0,
         }
     }
 

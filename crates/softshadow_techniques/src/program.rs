@@ -103,6 +103,7 @@ impl VisibilityProgram<'_> {
     /// As [`Technique::check`] and [`Technique::values`].
     pub fn check(&self) -> Result<(), TechniqueError> {
         self.technique.check()?;
+        self.technique.check_receivers(self.receivers)?;
         if self.technique.wants_occluders() && self.occluders.len() != self.lights.len() {
             let reason = format!("{} given for {} lights", self.occluders.len(), self.lights.len());
             return Err(TechniqueError::Setting { technique: self.technique.name(), setting: "occluders", reason });

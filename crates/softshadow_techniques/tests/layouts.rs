@@ -13,6 +13,7 @@ use softshadow_scene::{BvhNode, Corner, LocalPoint};
 use softshadow_shaders::{EMBEDDED, module};
 use softshadow_techniques::depth_complexity::{ClusterRange, FoldSettings, FrameRecord};
 use softshadow_techniques::hard_shadow_map::{ShadowView, ShadowViews};
+use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
 use softshadow_techniques::parts::occluder_buffers::{EdgeRecord, FaceRecord, IncidentFace};
 use softshadow_techniques::parts::receivers::{CameraClip, CameraRays, PointRange, RECEIVER_BYTES, Receiver, SubScene};
@@ -29,7 +30,7 @@ struct Layout {
 /// A Rust struct: its name, its bytes by the compiler, the WGSL file and the struct there.
 type Pair = (&'static str, usize, &'static str, &'static str);
 
-const PAIRS: [Pair; 22] = [
+const PAIRS: [Pair; 23] = [
     ("Receiver", size_of::<Receiver>(), "shared/receiver.wgsl", "Receiver"),
     ("CameraClip", size_of::<CameraClip>(), "receivers/draw_triangle_ids.wgsl", "CameraClip"),
     ("CameraRays", size_of::<CameraRays>(), "receivers/place_on_triangles.wgsl", "CameraRays"),
@@ -38,6 +39,7 @@ const PAIRS: [Pair; 22] = [
     ("LocalPoint", size_of::<LocalPoint>(), "receivers/place_points.wgsl", "LocalPoint"),
     ("LightRecord", size_of::<LightRecord>(), "shared/light.wgsl", "Light"),
     ("Sampling", size_of::<Sampling>(), "shared/samples.wgsl", "Sampling"),
+    ("InterleavingRecord", size_of::<InterleavingRecord>(), "shared/continuity.wgsl", "Interleaving"),
     ("MaterialRecord", size_of::<MaterialRecord>(), "shading/shade.wgsl", "Material"),
     ("ShadingRecord", size_of::<ShadingRecord>(), "shading/shade.wgsl", "Shading"),
     ("TraceRange", size_of::<TraceRange>(), "ray_traced/hierarchy.wgsl", "TraceRange"),
@@ -173,7 +175,7 @@ fn shader(file: &str) -> &'static str {
 }
 
 /// Constants of `depth_complexity`, each with what the kernels make of it.
-fn counted_by_kernels() -> [(&'static str, u64); 13] {
+fn counted_by_kernels() -> [(&'static str, u64); 14] {
     let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/{file}.wgsl"), name).bytes);
     let value = |file: &str, name| constant(shader(&format!("depth_complexity/{file}.wgsl")), name).unwrap();
     [
@@ -185,6 +187,7 @@ fn counted_by_kernels() -> [(&'static str, u64); 13] {
         ("SLOT_BYTES", bytes("tiles", "Slot")),
         ("CLUSTER_BYTES", bytes("clusters", "Cluster")),
         ("MOST_SAMPLES", bytes("frame", "FrameSamples") / 16),
+        ("SET_SAMPLES", bytes("sample_sets", "SampleSets") / 8),
         ("MOST_CORNERS", bytes("fold", "Outline") / 16),
         ("GROUP", bytes("fold", "GroupSamples") / 16),
         ("HEAD_BYTES", 4 * value("tiles", "HEAD")),
@@ -295,7 +298,7 @@ fn the_text_says_what_the_compiler_does() {
     assert_eq!(read("BvhNode"), offsets!(BvhNode, low, skip, high, leaf));
     assert_eq!(
         read("Sampling"),
-        offsets!(Sampling, count, words, probes, pass_index, passes, reserved0, reserved1, reserved2)
+        offsets!(Sampling, count, words, probes, pass_index, passes, sets, row, first_receiver)
     );
 }
 

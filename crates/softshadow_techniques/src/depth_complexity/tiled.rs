@@ -1,10 +1,9 @@
 //! The passes of the tiled path: receivers in tiles of 64, a list of edges for each, counters folded over it.
 
 use softshadow_plan::{Kernel, Over, Plan, ResourceId};
-use softshadow_scene::{LightShape, Outline};
 
-use super::values::{ClusterRange, FoldSettings, GROUP, MOST_CORNERS, area_answers, light_outline};
-use super::{DepthComplexity, Reads};
+use super::values::{ClusterRange, FoldSettings, GROUP, MOST_CORNERS, area_answers};
+use super::{DepthComplexity, Reads, Samples};
 use crate::parts::occluder_buffers::OccluderContents;
 use crate::request::Request;
 
@@ -23,8 +22,8 @@ const BUNDLES: u32 = 8;
 const HEAD_BYTES: u64 = 40;
 /// Bytes of a chunk of a list of edges.
 const CHUNK_BYTES: u64 = 128;
-/// Chunks of lists that a tile gets on average: 1,920 edges.
-const CHUNKS_PER_TILE: u64 = 64;
+/// Chunks of lists that a tile and its bundles get on average, together: 3,840 edges and faces.
+const CHUNKS_PER_TILE: u64 = 128;
 /// Bytes of `ListCounts`.
 const COUNT_BYTES: u64 = 32;
 /// Bytes of `TilePart`.
@@ -44,10 +43,9 @@ const CULL: Kernel = Kernel { file: "depth_complexity/cull.wgsl", entry: "cull" 
 const NARROW: Kernel = Kernel { file: "depth_complexity/cull.wgsl", entry: "narrow" };
 const SIZE_FOLD: Kernel = Kernel { file: "depth_complexity/size_fold.wgsl", entry: "size_fold" };
 const FOLD: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold" };
-const FOLD_QUADRANGLE: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_quadrangle" };
-const FOLD_POLYGON: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_polygon" };
-const FOLD_DISC: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_disc" };
-const FOLD_MOVING: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_moving" };
+const FOLD_AREAS: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_areas" };
+const FOLD_OWN_SAMPLES: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_own_samples" };
+const FOLD_OWN_SAMPLES_AREAS: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_own_samples_areas" };
 
 /// Bytes of the lists that one receiver takes, on average.
 pub(super) fn list_bytes_per_receiver() -> u64 {
@@ -167,27 +165,24 @@ pub(super) fn append_fold(
         .bind("slots", reads.slots)
         .bind("lists", lists)
         .bind("counts", counts);
-    let moving = matches!(request.light.shape(), LightShape::Sphere { .. });
-    let area_kernel = match light_outline(request) {
-        Some(Outline::Disc(_)) => FOLD_DISC,
-        Some(Outline::Polygon(corners)) if corners.len() == 4 => FOLD_QUADRANGLE,
-        _ => FOLD_POLYGON,
-    };
     for group in 0..settings.samples.div_ceil(GROUP) {
-        let group_samples = plan.parameter(format!("group samples {group}"), u64::from(GROUP) * 16);
-        let fold_settings = plan.parameter(format!("fold settings {group}"), size_of::<FoldSettings>() as u64);
         let areas = areas.filter(|_| group == 0);
+        let [plain, with_areas] = match reads.samples {
+            Samples::Shared(_) => [FOLD, FOLD_AREAS],
+            Samples::Own { .. } => [FOLD_OWN_SAMPLES, FOLD_OWN_SAMPLES_AREAS],
+        };
         let (kernel, why) = match areas {
-            Some(_) => (area_kernel, "adds up what changes at each edge for 64 samples, and the area beyond it"),
-            None if moving => {
-                (FOLD_MOVING, "adds up what changes at each edge for 64 samples that move with the receiver")
-            }
-            None => (FOLD, "adds up what changes at each edge for 64 samples"),
+            Some(_) => (with_areas, "adds up what changes at each edge for 64 samples, and the area beyond it"),
+            None => (plain, "adds up what changes at each edge for 64 samples"),
+        };
+        let fold_settings = plan.parameter(format!("fold settings {group}"), size_of::<FoldSettings>() as u64);
+        let group_samples = match reads.samples {
+            Samples::Shared(_) => Some(plan.parameter(format!("group samples {group}"), u64::from(GROUP) * 16)),
+            Samples::Own { .. } => None,
         };
         let outline = areas.map(|_| plan.parameter("light outline", MOST_CORNERS as u64 * 16));
         let pass = plan.compute(format!("fold edges {group}"), why, kernel, Over::Indirect(size));
         pass.bind("light_frame", reads.frame)
-            .bind("group_samples", group_samples)
             .bind("fold_settings", fold_settings)
             .bind("receivers", reads.receivers)
             .bind("edges", edges)
@@ -196,6 +191,12 @@ pub(super) fn append_fold(
             .bind("lists", lists)
             .bind("blocked", reads.blocked)
             .bind("counts", counts);
+        match group_samples {
+            Some(group_samples) => {
+                pass.bind("group_samples", group_samples);
+            }
+            None => reads.samples.bind(pass),
+        }
         if let (Some(areas), Some(outline)) = (areas, outline) {
             pass.bind("areas", areas).bind("outline", outline);
         }

@@ -1,8 +1,10 @@
 //! The last step of sampled techniques: masks become visibility and its standard error, and results leave.
 
 use softshadow_plan::{Kernel, Over, Plan, ResourceId};
+use softshadow_scene::{LightSampling, SampleSpread};
 
 use crate::parts::VISIBILITY;
+use crate::parts::interleaving::{self, Averaged};
 use crate::parts::light_buffers::{self, LightBuffers};
 use crate::parts::shading::{self, Seen};
 use crate::request::Request;
@@ -12,9 +14,16 @@ pub const STANDARD_ERROR: &str = "standard error";
 /// Label of the masks of blocked samples.
 pub const BLOCKED: &str = "blocked samples";
 
-const RESOLVE: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve" };
-const RESOLVE_TEXTURED: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve_textured" };
-const RESOLVE_AREAS: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve_areas" };
+const fn kernel(entry: &'static str) -> Kernel {
+    Kernel { file: "resolve/resolve.wgsl", entry }
+}
+
+const RESOLVE: Kernel = kernel("resolve");
+const RESOLVE_TEXTURED: Kernel = kernel("resolve_textured");
+const RESOLVE_AREAS: Kernel = kernel("resolve_areas");
+const KEEP_SAMPLES: Kernel = kernel("keep_samples");
+const KEEP_TEXTURED: Kernel = kernel("keep_textured");
+const KEEP_AREAS: Kernel = kernel("keep_areas");
 
 /// What a technique found out about its samples.
 #[derive(Debug, Clone, Copy)]
@@ -31,7 +40,7 @@ pub struct Masks {
 pub fn append(
     plan: &mut Plan,
     request: &Request<'_>,
-    samples: u32,
+    sampling: &LightSampling,
     light: &LightBuffers,
     receivers: ResourceId,
     masks: Masks,
@@ -40,16 +49,26 @@ pub fn append(
     let visibility = plan.persistent(VISIBILITY, bytes);
     let standard_error = plan.persistent(STANDARD_ERROR, bytes);
     let textured = request.channels == 3;
-    let over = Over::Items { count: request.block.count as u32, work_per_item: samples.div_ceil(32) };
-    let radiance = textured.then(|| light_buffers::append_radiance(plan, samples));
+    let over = Over::Items { count: request.block.count as u32, work_per_item: sampling.count.div_ceil(32) };
+    let radiance = textured.then(|| light_buffers::append_radiance(plan, sampling.total()));
     // A texture's light is in its samples, not in its area.
     let areas = masks.areas.filter(|_| !textured);
-    let kernel = if textured { RESOLVE_TEXTURED } else { areas.map_or(RESOLVE, |_| RESOLVE_AREAS) };
-    let pass = plan.compute("resolve", "turns masks into visibility and its standard error", kernel, over);
-    pass.bind("sampling", light.sampling)
-        .bind("blocked", masks.blocked)
-        .bind("visibility", visibility)
-        .bind("standard_error", standard_error);
+    let averaged = (sampling.spread == SampleSpread::Interleaved).then(|| interleaving::pass_values(plan, request));
+    let [plain, by_area, by_sample] = match averaged {
+        None => [RESOLVE, RESOLVE_AREAS, RESOLVE_TEXTURED],
+        Some(_) => [KEEP_SAMPLES, KEEP_AREAS, KEEP_TEXTURED],
+    };
+    let kernel = if textured { by_sample } else { areas.map_or(plain, |_| by_area) };
+    let why = match averaged {
+        None => "turns masks into visibility and its standard error",
+        Some(_) => "turns masks into what each pixel sees alone",
+    };
+    let pass = plan.compute("resolve", why, kernel, over);
+    pass.bind("sampling", light.sampling).bind("blocked", masks.blocked);
+    match averaged {
+        None => pass.bind("visibility", visibility).bind("standard_error", standard_error),
+        Some(pass_values) => pass.bind("pass_values", pass_values),
+    };
     match areas {
         Some(areas) => pass.bind("areas", areas),
         None => pass.bind("decided", masks.decided),
@@ -57,16 +76,20 @@ pub fn append(
     if let Some(radiance) = radiance {
         pass.bind("sample_radiance", radiance);
     }
+    if let Some(pass_values) = averaged {
+        let averaged = Averaged { sampling: light.sampling, receivers, pass_values, visibility, standard_error };
+        interleaving::append(plan, request, sampling.tile, &averaged);
+    }
     match request.wants.picture {
         None => {}
         Some(shading::Shading::Integrated) => {
             let seen = Seen::Masks { blocked: masks.blocked, decided: masks.decided };
-            shading::append(plan, request, receivers, light, seen, samples);
+            shading::append(plan, request, receivers, light, seen, sampling);
         }
         // The visibility is known after the last pass only.
         Some(shading::Shading::Modulated) if !request.closes_light => {}
         Some(shading::Shading::Modulated) => {
-            shading::append(plan, request, receivers, light, Seen::Values(visibility), samples);
+            shading::append(plan, request, receivers, light, Seen::Values(visibility), sampling);
         }
     }
     if request.closes_light {

@@ -2,16 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Content, Kernel, Over, Plan, ResourceId, Values};
-use softshadow_scene::Material;
+use softshadow_scene::{LightSampling, Material, SampleSpread};
 
-use crate::parts::light_buffers::LightBuffers;
+use crate::parts::interleaving;
+use crate::parts::light_buffers::{self, LightBuffers};
 use crate::request::{ReceiverSource, Request};
 
 /// How visibility and direct light are put together.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shading {
-    /// Every light sample with its own visibility (Forest et al., equation 6). Techniques without samples are modulated.
+    /// Every light sample with its own visibility (Forest et al., equation 6); exact areas do not enter. Techniques without samples are
+    /// modulated.
     #[default]
     Integrated,
     /// The light without shadow, times the visibility (Forest et al., equation 3).
@@ -89,14 +91,20 @@ pub fn append(
     receivers: ResourceId,
     light: &LightBuffers,
     seen: Seen,
-    count: u32,
+    sampling: &LightSampling,
 ) {
-    let radiance = plan.find("sample radiance").unwrap_or_else(|| super::light_buffers::append_radiance(plan, count));
+    let radiance =
+        plan.find("sample radiance").unwrap_or_else(|| light_buffers::append_radiance(plan, sampling.total()));
     let shading = plan.parameter("shading", size_of::<ShadingRecord>() as u64);
     let triangle_materials = plan.uploaded("triangle materials", &request.scene.triangle_materials);
     let materials = plan.uploaded("materials", &request.scene.materials);
-    let color = plan.persistent(COLOR, request.block.count as u64 * 16);
-    let over = Over::Items { count: request.block.count as u32, work_per_item: count / 8 + 1 };
+    // A final visibility is averaged already.
+    let is_noisy = sampling.spread == SampleSpread::Interleaved && matches!(seen, Seen::Masks { .. });
+    let added = match is_noisy {
+        true => interleaving::noisy_color(plan, request),
+        false => plan.persistent(COLOR, request.block.count as u64 * 16),
+    };
+    let over = Over::Items { count: request.block.count as u32, work_per_item: sampling.count / 8 + 1 };
     let (kernel, why) = match seen {
         Seen::Masks { .. } => (INTEGRATED, "adds the light of every sample that is not blocked"),
         Seen::Values(_) => (MODULATED, "adds the light without shadow, times the visibility"),
@@ -110,13 +118,20 @@ pub fn append(
         .bind("sample_radiance", radiance)
         .bind("triangle_materials", triangle_materials)
         .bind("materials", materials)
-        .bind("color", color);
+        .bind("color", added);
     match seen {
         Seen::Masks { blocked, decided } => pass.bind("blocked", blocked).bind("decided", decided),
         Seen::Values(visibility) => pass.bind("visibility", visibility),
     };
-    if request.closes_block {
+    if !request.closes_block {
+        return;
+    }
+    if is_noisy {
+        let color = plan.persistent(COLOR, request.block.count as u64 * 16);
+        interleaving::append_colors(plan, request, sampling.tile, [receivers, triangle_materials, added, color]);
         plan.outputs.push(color);
+    } else {
+        plan.outputs.push(added);
     }
 }
 

@@ -27,7 +27,9 @@ fn refused(storage_buffers: u32) -> BTreeSet<&'static str> {
     for technique in techniques() {
         technique.check().unwrap();
         let requests = fixture.requests(&technique);
-        assert!(requests.len() >= 200, "the grid is a grid");
+        // Who averages pixels serves no points.
+        let served = if technique.interleaves() { 2 } else { 1 };
+        assert!(requests.len() * served >= 200, "the grid is a grid");
         for plan in requests.iter().map(|request| technique.plan(request)) {
             match check(&plan, &host) {
                 Ok(()) => {}
@@ -73,7 +75,7 @@ fn most_bound() -> (usize, BTreeSet<String>) {
 fn the_fullest_pass_fills_core_webgpu() {
     // The bits of every sample, its light and its material: nothing more fits a kernel that makes a picture. Depths are counted over
     // faces, their edges and their tree; folds have edges, their faces and lists, and write bits and areas.
-    let fullest = ["shade", "count reference depth", "fold edges"].map(str::to_owned);
+    let fullest = ["shade", "count reference depth", "list faces", "fold edges 0"].map(str::to_owned);
     assert_eq!(most_bound(), (8, BTreeSet::from(fullest)));
 }
 
