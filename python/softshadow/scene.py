@@ -176,8 +176,8 @@ class Scene:
         """The same meshes with other vertices: the next frame of a scene that moves.
 
         Faces and materials stay. The new scene remembers where it came from, so a call with it refits what the last
-        frame left (order of triangles, hierarchies, edges) instead of building it; ``result.info`` counts both and gives
-        ``rebuild_reasons``. The result is that of a scene made anew from the same vertices.
+        frame left (order of triangles, hierarchies, edges) instead of building it; ``result.info`` counts both and
+        gives ``rebuild_reasons``. The result is that of a scene made anew from the same vertices.
 
         Parameters
         ----------

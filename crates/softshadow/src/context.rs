@@ -120,7 +120,10 @@ impl Context {
         let superseded = cache.superseded();
         drop(cache);
         preparation.preparation_ms = started.elapsed().as_secs_f64() * 1e3;
-        engine.forget(&superseded);
+        // It would wait for another thread's run.
+        if !superseded.is_empty() {
+            engine.forget(&superseded);
+        }
         Ok(Prepared { contents, occluders, preparation })
     }
 }

@@ -41,8 +41,11 @@ fn anew(scene: &Scene) -> Scene {
     Scene::new(scene.meshes().to_vec()).unwrap()
 }
 
-/// Triangles by the caller's id: corners, their vertices, mesh.
-fn by_caller(local: &LocalScene) -> BTreeMap<u32, ([[u32; 3]; 3], [u32; 3], u32)> {
+/// Bits of the corners, their vertices, mesh.
+type Told = ([[u32; 3]; 3], [u32; 3], u32);
+
+/// Triangles by the caller's id.
+fn by_caller(local: &LocalScene) -> BTreeMap<u32, Told> {
     let bits = |t: [[f32; 3]; 3]| t.map(|c| c.map(f32::to_bits));
     let rows = local.triangles().zip(&local.vertex_ids).zip(&local.mesh_ids).zip(&local.caller_ids);
     rows.map(|(((t, v), m), id)| (*id, (bits(t), *v, *m))).collect()
@@ -141,7 +144,8 @@ fn a_mirrored_turned_and_grown_scene_is_refitted() {
     let still = procedural::shipped("fork").unwrap().build().unwrap();
     let first = local(&still);
     let hidden = occluders(&first);
-    let ways: [fn(&[f64; 3]) -> [f64; 3]; 3] =
+    type Way = fn(&[f64; 3]) -> [f64; 3];
+    let ways: [Way; 3] =
         [|v| [-v[0], v[2], v[1]], |v| [v[1], v[2], v[0]], |v| [7.0 - 30.0 * v[0], 90.0 * v[1], 50.0 * v[2] + 1e5]];
     for way in ways {
         let vertices = still.meshes().iter().map(|m| Some(m.vertices.iter().map(way).collect()));
