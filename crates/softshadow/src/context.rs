@@ -116,7 +116,7 @@ impl Context {
         let started = Instant::now();
         let mut preparation = Preparation::default();
         let contents = cache.contents(scene, bounds, engine.host().limits.storage_binding_bytes, &mut preparation);
-        let occluders = cache.occluders(scene, &contents, lights, &mut preparation)?;
+        let occluders = cache.occluders(scene, &contents, lights, &mut preparation);
         let superseded = cache.superseded();
         drop(cache);
         preparation.preparation_ms = started.elapsed().as_secs_f64() * 1e3;
@@ -124,7 +124,7 @@ impl Context {
         if !superseded.is_empty() {
             engine.forget(&superseded);
         }
-        Ok(Prepared { contents, occluders, preparation })
+        Ok(Prepared { contents, occluders: occluders?, preparation })
     }
 }
 

@@ -83,11 +83,12 @@ impl SceneCache {
         preparation: &mut Preparation,
     ) -> Result<Vec<Arc<OccluderContents>>, Error> {
         let found = lights.iter().map(|light| self.occluders_of(scene, contents, light, preparation));
-        let found = found.collect::<Result<Vec<_>, _>>()?;
+        let found = found.collect::<Result<Vec<_>, _>>();
+        // After a failure too: otherwise a moving scene that fails every frame would leave one entry each.
         if !lights.is_empty() {
             self.drop_occluders(scene, KEPT_SCENES.max(lights.len()));
         }
-        Ok(found)
+        found
     }
 
     /// Drops what was made of earlier frames of a scene, and the oldest entries beyond `most`.
@@ -149,5 +150,34 @@ impl SceneCache {
         let kept: HashSet<ContentKey> = kept.map(|content| content.key).collect();
         keys.retain(|key| !kept.contains(key));
         keys
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use softshadow_scene::{LightShape, Material, Mesh, look_at};
+
+    use super::*;
+
+    #[test]
+    fn a_moving_scene_takes_one_place_whether_its_frames_fail_or_not() {
+        let corners = |frame: u32| vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.1 * f64::from(frame)]];
+        let mesh = Mesh::new("leaf", corners(0), vec![[0, 1, 2]], Material::default()).unwrap();
+        let still = Scene::new(vec![mesh]).unwrap();
+        let ball = |z| {
+            let pose = look_at([0.0, 0.0, z], [0.0, 0.0, z - 1.0], Some([0.0, 1.0, 0.0])).unwrap();
+            Light::new(LightShape::Sphere { radius: 0.5 }, pose).unwrap()
+        };
+        let mut cache = SceneCache::default();
+        for frame in 0..10 {
+            let scene = still.with_vertices(vec![Some(corners(frame))]).unwrap();
+            // Every other frame has a light that the leaf touches.
+            let (lights, fails) = ([ball(3.0), ball(if frame % 2 == 0 { 0.0 } else { 4.0 })], frame % 2 == 0);
+            let mut preparation = Preparation::default();
+            let contents = cache.contents(&scene, None, 1 << 20, &mut preparation);
+            assert_eq!(cache.occluders(&scene, &contents, &lights, &mut preparation).is_err(), fails);
+            assert_eq!((cache.scenes.len(), cache.occluders.len()), (1, 1), "frame {frame}");
+            assert_eq!(cache.superseded().is_empty(), frame == 0, "the last frame's buffers are named");
+        }
     }
 }
