@@ -44,7 +44,7 @@ pub struct Bvh {
     pub nodes: Vec<BvhNode>,
     /// For each triangle of the new order its index in the old.
     pub order: Vec<u32>,
-    /// [`cost`] when it was built; a refit is judged by it.
+    /// Its expected work when it was built; a refit is judged by it.
     pub built_cost: f64,
 }
 
