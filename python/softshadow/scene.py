@@ -172,6 +172,33 @@ class Scene:
         meshes, notes = read(source)
         return cls(meshes, notes=notes)
 
+    def with_vertices(self, vertices: Iterable[ArrayLike | None]) -> Scene:
+        """The same meshes with other vertices: the next frame of a scene that moves.
+
+        Faces and materials stay. The new scene remembers where it came from, so a call with it refits what the last
+        frame left (order of triangles, hierarchies, edges) instead of building it; ``result.info`` counts both and
+        gives ``rebuild_reasons``. The result is that of a scene made anew from the same vertices.
+
+        Parameters
+        ----------
+        vertices : iterable of (n, 3) float or None
+            One entry a mesh, in world coordinates, with as many rows as the mesh has; copied. None leaves a mesh where
+            it is.
+
+        Raises
+        ------
+        SceneError
+            Unless there is one entry a mesh, for another number of vertices, and for coordinates that are not finite,
+            with the mesh's name and the first bad index.
+        """
+        if isinstance(vertices, np.ndarray) or not isinstance(vertices, Iterable):
+            raise SceneError("scene vertices: an iterable with one array or None a mesh expected")
+        rows = [
+            None if given is None else floats(f"vertices of mesh {index}", given, ("n", 3))
+            for index, given in enumerate(vertices)
+        ]
+        return self._from_core(self._built().with_vertices(rows))
+
     @property
     def meshes(self) -> tuple[Mesh, ...]:
         """The meshes in order; their arrays are read-only copies."""

@@ -1,18 +1,16 @@
 //! An open device and what is kept for it: the engine, and the scenes of the last calls as the device reads them.
 
-use std::collections::VecDeque;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use softshadow_engine::{AdapterChoice, AdapterInfo, DeviceKind, Engine};
-use softshadow_scene::{Light, LocalScene, Receivers, Scene};
-use softshadow_techniques::parts::occluder_buffers::boundary_of;
+use softshadow_scene::{Light, Receivers, Scene};
 use softshadow_techniques::{OccluderContents, SceneContents};
 
 use crate::error::Error;
-
-/// Scenes that are kept ready.
-const KEPT_SCENES: usize = 4;
+use crate::info::Preparation;
+use crate::scene_cache::SceneCache;
 
 /// Which device computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,8 +52,15 @@ pub struct Context {
     choice: AdapterChoice,
     adapter: AdapterInfo,
     engine: Mutex<Arc<Engine>>,
-    scenes: Mutex<VecDeque<(u64, Arc<SceneContents>)>>,
-    occluders: Mutex<VecDeque<(u64, Arc<OccluderContents>)>>,
+    scenes: Mutex<SceneCache>,
+}
+
+/// A scene and what hides each light of a call, as the device reads them.
+pub(crate) struct Prepared {
+    pub(crate) contents: Arc<SceneContents>,
+    /// One a light, where the technique wants them.
+    pub(crate) occluders: Vec<Arc<OccluderContents>>,
+    pub(crate) preparation: Preparation,
 }
 
 impl Context {
@@ -75,13 +80,7 @@ impl Context {
         if adapter.device_type == DeviceKind::Software {
             log::warn!("'{}' is a software adapter: everything runs on the CPU", adapter.name);
         }
-        Ok(Self {
-            choice,
-            adapter,
-            engine: Mutex::new(Arc::new(engine)),
-            scenes: Mutex::default(),
-            occluders: Mutex::default(),
-        })
+        Ok(Self { choice, adapter, engine: Mutex::new(Arc::new(engine)), scenes: Mutex::default() })
     }
 
     /// What the device is.
@@ -104,55 +103,28 @@ impl Context {
         Ok(Arc::clone(&engine))
     }
 
-    /// The scene as the device reads it, from the cache where it was used lately.
-    pub(crate) fn contents(&self, scene: &Scene, receivers: &Receivers) -> Result<Arc<SceneContents>, Error> {
-        let mut scenes = lock(&self.scenes);
-        if let Some(at) = scenes.iter().position(|(identity, _)| *identity == scene.identity()) {
-            let known = scenes.remove(at);
-            scenes.extend(known);
-            return Ok(Arc::clone(&scenes[scenes.len() - 1].1));
-        }
+    /// The scene as the device reads it, and with `lights` what hides each: from the cache where it was used lately, from an earlier
+    /// frame of a scene that moves, or made anew.
+    pub(crate) fn prepare(&self, scene: &Scene, receivers: &Receivers, lights: &[Light]) -> Result<Prepared, Error> {
         // Without a vertex the frame is that of the points.
         let bounds = match receivers {
             Receivers::Points(points) => points_bounds(points.positions()),
             Receivers::Camera(_) => None,
         };
-        let binding = self.engine()?.host().limits.storage_binding_bytes;
-        let contents = Arc::new(SceneContents::new(LocalScene::new(scene, bounds, binding)));
-        if contents.local.triangle_count() > 0 {
-            scenes.push_back((scene.identity(), Arc::clone(&contents)));
-            if scenes.len() > KEPT_SCENES {
-                scenes.pop_front();
-            }
+        let engine = self.engine()?;
+        let mut cache = lock(&self.scenes);
+        let started = Instant::now();
+        let mut preparation = Preparation::default();
+        let contents = cache.contents(scene, bounds, engine.host().limits.storage_binding_bytes, &mut preparation);
+        let occluders = cache.occluders(scene, &contents, lights, &mut preparation);
+        let superseded = cache.superseded();
+        drop(cache);
+        preparation.preparation_ms = started.elapsed().as_secs_f64() * 1e3;
+        // It would wait for another thread's run.
+        if !superseded.is_empty() {
+            engine.forget(&superseded);
         }
-        Ok(contents)
-    }
-
-    /// What hides each light, from the cache where it was used lately.
-    pub(crate) fn occluders(
-        &self,
-        scene: &Scene,
-        contents: &SceneContents,
-        lights: &[Light],
-    ) -> Result<Vec<Arc<OccluderContents>>, Error> {
-        let of = |light: &Light| {
-            let boundary = boundary_of(&contents.local, light);
-            let mut kept = lock(&self.occluders);
-            let is_it =
-                |(id, known): &&(u64, Arc<OccluderContents>)| *id == scene.identity() && known.boundary == boundary;
-            if let Some(at) = kept.iter().position(|entry| is_it(&entry)) {
-                let known = kept.remove(at);
-                kept.extend(known);
-                return Ok(Arc::clone(&kept[kept.len() - 1].1));
-            }
-            let made = Arc::new(OccluderContents::new(&contents.local, boundary)?);
-            kept.push_back((scene.identity(), Arc::clone(&made)));
-            if kept.len() > KEPT_SCENES.max(lights.len()) {
-                kept.pop_front();
-            }
-            Ok(made)
-        };
-        lights.iter().map(of).collect()
+        Ok(Prepared { contents, occluders: occluders?, preparation })
     }
 }
 
@@ -184,10 +156,10 @@ mod tests {
             |red: f32| light.clone().with_texture(LightTexture::new(1, 1, vec![[red, 0.0, 0.0]]).unwrap()).unwrap();
         let context = Context::new(&DeviceChoice::Auto).unwrap();
         let receivers = Receivers::Points(softshadow_scene::Points::new(vec![[0.0, 0.0, -1.0]], None).unwrap());
-        let contents = |scene| context.contents(scene, &receivers).unwrap();
-        let occluders = |light| context.occluders(&scene, &contents(&scene), &[light]).unwrap().remove(0);
-        let (scene_then, then) = (contents(&scene), occluders(frame(1.0)));
-        assert!(Arc::ptr_eq(&scene_then, &contents(&scene)));
+        let prepare = |light| context.prepare(&scene, &receivers, &[light]).unwrap();
+        let occluders = |light| prepare(light).occluders.remove(0);
+        let (scene_then, then) = (prepare(frame(1.0)).contents, occluders(frame(1.0)));
+        assert!(Arc::ptr_eq(&scene_then, &prepare(frame(0.5)).contents));
         assert!(Arc::ptr_eq(&then, &occluders(frame(0.5))));
         // A light that has moved has other occluders.
         let moved =

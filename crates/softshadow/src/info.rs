@@ -29,6 +29,9 @@ pub struct Info {
     pub cut_triangles: usize,
     /// Triangles that lie behind lights and were left out for them, added up over lights.
     pub triangles_behind: usize,
+    /// How this call came to its scene, apart from `wall_ms`.
+    #[serde(flatten)]
+    pub preparation: Preparation,
     /// Wall time from plan to values in milliseconds.
     pub wall_ms: f64,
     /// Time by pass, where the device has a clock.
@@ -51,6 +54,23 @@ pub struct Info {
     pub standard_error: Option<f64>,
     /// The passes, why each is there, and what each resource weighs.
     pub plan: String,
+}
+
+/// What a call made of its scene before it ran; all zeros where everything was kept from earlier calls.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Preparation {
+    /// Whether the scene was laid out anew, 0 or 1.
+    pub scene_builds: usize,
+    /// Whether it was made from an earlier frame of a moving scene, 0 or 1.
+    pub scene_refits: usize,
+    /// Lights for which faces and edges were made anew. Lights that leave the same triangles whole share them.
+    pub occluder_builds: usize,
+    /// Lights for which they were made from an earlier frame.
+    pub occluder_refits: usize,
+    /// Why something was made anew though an earlier frame or another light had left it, in words; no entry for what is new.
+    pub rebuild_reasons: Vec<String>,
+    /// Milliseconds of all that.
+    pub preparation_ms: f64,
 }
 
 impl Info {

@@ -23,19 +23,20 @@ pub mod image_file;
 mod info;
 mod light_points;
 mod render;
+mod scene_cache;
 mod visibility;
 
 pub use compare::{Comparison, ComparisonRow, compare};
 pub use context::{Context, DeviceChoice, adapters};
 pub use error::Error;
-pub use info::Info;
+pub use info::{Info, Preparation};
 pub use light_points::{LightPoints, light_points};
 pub use render::{Picture, PictureOptions, render};
 pub use softshadow_engine::{AdapterInfo, DeviceKind, PassTime, Timing};
 pub use softshadow_measure as measure;
 pub use softshadow_scene::{
-    Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, SamplePattern,
-    SampleSpread, Scene, SceneError, UpAxis, look_at, procedural, scene_file,
+    Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, STRETCH_LIMIT,
+    SamplePattern, SampleSpread, Scene, SceneError, UpAxis, look_at, procedural, scene_file,
 };
 pub use softshadow_techniques::depth_complexity::{Counters, Coverage, Evaluation, InitialCounts, Silhouettes};
 pub use softshadow_techniques::{DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError};

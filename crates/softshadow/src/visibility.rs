@@ -18,9 +18,9 @@ use softshadow_techniques::{
 };
 
 use crate::Progress;
-use crate::context::Context;
+use crate::context::{Context, Prepared};
 use crate::error::Error;
-use crate::info::Info;
+use crate::info::{Info, Preparation};
 
 /// What a caller may want beside the values, and how much memory a call may take.
 #[derive(Debug, Clone, PartialEq)]
@@ -148,9 +148,12 @@ pub(crate) fn run(
             return Err(Error::TooLarge { what: "pixels of the image's longer side".into(), needed, limit });
         }
     }
-    let contents = context.contents(scene, receivers)?;
+    let wants_occluders = technique.wants_occluders() && receivers.count() > 0;
+    let hidden: &[Light] = if wants_occluders { lights } else { &[] };
+    let Prepared { contents, occluders, preparation } = context.prepare(scene, receivers, hidden)?;
     let channels = if lights.iter().any(|l| l.texture().is_some()) { 3 } else { 1 };
     let mut collector = Collector::new(context, scene, lights, receivers, technique, options, &contents, channels);
+    collector.result.info.preparation = preparation;
     let sees_nothing = matches!(receivers, Receivers::Camera(_)) && contents.local.sub_scenes.is_empty();
     if receivers.count() == 0 || sees_nothing {
         return Ok(collector.finish(RunReport::default()));
@@ -165,10 +168,6 @@ pub(crate) fn run(
         source.row(),
         contents.local.sub_scenes.len(),
     )?;
-    let occluders = match technique.wants_occluders() {
-        true => context.occluders(scene, &contents, lights)?,
-        false => Vec::new(),
-    };
     collector.result.info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
     collector.result.info.triangles_behind = occluders.iter().map(|o| o.triangles_behind).sum();
     let program = VisibilityProgram {
@@ -323,6 +322,7 @@ impl<'a> Collector<'a> {
             silhouette_edges: 0,
             cut_triangles: 0,
             triangles_behind: 0,
+            preparation: Preparation::default(),
             wall_ms: 0.0,
             pass_ms: Vec::new(),
             bytes: Vec::new(),

@@ -54,6 +54,15 @@ impl Pool {
         });
     }
 
+    /// Gives uploads back that will not be used again.
+    pub(crate) fn forget(&mut self, contents: &[ContentKey]) {
+        for key in contents {
+            if let Some((slot, _)) = self.slots.remove(&Key::Content(*key)) {
+                slot.destroy();
+            }
+        }
+    }
+
     /// Gives everything back.
     pub(crate) fn clear(&mut self) {
         self.slots.drain().for_each(|(_, (slot, _))| slot.destroy());

@@ -87,6 +87,12 @@ impl Engine {
         lock(&self.opened.lost).get_or_insert_with(|| "destroyed by the caller".to_owned());
     }
 
+    /// Gives uploads back that will not be used again, such as the last frame of a scene that moves. A run that uses one all the same
+    /// uploads it again.
+    pub fn forget(&self, contents: &[ContentKey]) {
+        lock(&self.state).pool.forget(contents);
+    }
+
     /// Runs a program. `on_stage` receives each stage's outputs and returns whether to go on; it is also asked, with `None`,
     /// between the submissions of a stage that was split.
     ///

@@ -55,6 +55,12 @@ impl Scene {
         self.0.meshes().iter().map(flat).collect()
     }
 
+    /// Another frame: one array or `None` a mesh.
+    fn with_vertices(&self, py: Python<'_>, vertices: Vec<Option<PyReadonlyArray2<'_, f64>>>) -> PyResult<Self> {
+        let copies = vertices.iter().map(|given| given.as_ref().map(rows).transpose()).collect::<PyResult<_>>()?;
+        detached(py, || self.0.with_vertices(copies).map(Self).map_err(Error::Scene))
+    }
+
     /// What a file held that is left out.
     #[getter]
     fn notes(&self) -> Vec<String> {

@@ -29,6 +29,14 @@ pub struct BvhNode {
     pub leaf: u32,
 }
 
+impl BvhNode {
+    /// What stands in a leaf; empty for an inner node.
+    pub(crate) fn leaf_range(&self) -> Range<usize> {
+        let first = (self.leaf >> LEAF_BITS) as usize;
+        first..first + (self.leaf & ((1 << LEAF_BITS) - 1)) as usize
+    }
+}
+
 /// A hierarchy and the order of triangles that its leaves refer to.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Bvh {
@@ -36,6 +44,8 @@ pub struct Bvh {
     pub nodes: Vec<BvhNode>,
     /// For each triangle of the new order its index in the old.
     pub order: Vec<u32>,
+    /// Its expected work when it was built; a refit is judged by it.
+    pub built_cost: f64,
 }
 
 impl Bvh {
@@ -46,7 +56,11 @@ impl Bvh {
             return Self::default();
         }
         let boxes: Vec<Aabb> = triangles.iter().map(|t| Aabb::from_points(&t.map(Vec3A::from))).collect();
-        let mut bvh = Self { nodes: Vec::with_capacity(2 * boxes.len()), order: Vec::with_capacity(boxes.len()) };
+        let mut bvh = Self {
+            nodes: Vec::with_capacity(2 * boxes.len()),
+            order: Vec::with_capacity(boxes.len()),
+            built_cost: 0.0,
+        };
         let distinct: HashSet<[u32; 6]> = boxes.iter().map(box_bits).collect();
         if distinct.len() < boxes.len() / 2 {
             // Equal boxes cannot be told apart: the builder would search for minutes and gain nothing.
@@ -56,6 +70,7 @@ impl Bvh {
             params.max_prims_per_leaf = MAX_LEAF;
             bvh.thread(&build_bvh2(&boxes, params, &mut std::time::Duration::default()));
         }
+        bvh.built_cost = cost(&bvh.nodes);
         bvh
     }
 
@@ -112,6 +127,47 @@ impl Bvh {
     }
 }
 
+/// Boxes anew, bottom-up, for a tree whose triangles have moved; `leaf_box` bounds what stands in a leaf. In depth-first order
+/// children follow their parents, so one backward walk meets them first.
+pub(crate) fn refit(nodes: &mut [BvhNode], leaf_box: impl Fn(Range<usize>) -> Aabb) {
+    for index in (0..nodes.len()).rev() {
+        let node = nodes[index];
+        let around = if node.leaf == 0 {
+            let mut around = Aabb::empty();
+            let mut child = index + 1;
+            while child < node.skip as usize {
+                around = around.union(&box_of(&nodes[child]));
+                child = nodes[child].skip as usize;
+            }
+            around
+        } else {
+            leaf_box(node.leaf_range())
+        };
+        (nodes[index].low, nodes[index].high) = (around.min.to_array(), around.max.to_array());
+    }
+}
+
+/// How much work a random line that meets the root can expect (MacDonald and Booth 1990): a step for every node and one for every
+/// triangle of a leaf, weighed by the surfaces of their boxes.
+pub(crate) fn cost(nodes: &[BvhNode]) -> f64 {
+    let area = |node: &BvhNode| {
+        let d = [0, 1, 2].map(|k| f64::from(node.high[k]) - f64::from(node.low[k]));
+        d[0] * d[1] + d[1] * d[2] + d[2] * d[0]
+    };
+    let work = |node: &BvhNode| area(node) * (1 + node.leaf_range().len()) as f64;
+    let root = nodes.first().map_or(0.0, area);
+    if root > 0.0 { nodes.iter().map(work).sum::<f64>() / root } else { 0.0 }
+}
+
+fn box_of(node: &BvhNode) -> Aabb {
+    Aabb::new(node.low.into(), node.high.into())
+}
+
+/// The box around points.
+pub(crate) fn box_around<'a>(points: impl Iterator<Item = &'a [f32; 3]>) -> Aabb {
+    points.fold(Aabb::empty(), |mut all, point| *all.extend(Vec3A::from(*point)))
+}
+
 fn box_bits(b: &Aabb) -> [u32; 6] {
     let (low, high) = (b.min.to_array(), b.max.to_array());
     [low[0], low[1], low[2], high[0], high[1], high[2]].map(f32::to_bits)
@@ -145,8 +201,8 @@ mod tests {
             if node.skip as usize <= index || node.skip as usize > bvh.nodes.len() {
                 return Err(format!("node {index} skips to {}", node.skip));
             }
-            for slot in (node.leaf >> LEAF_BITS)..(node.leaf >> LEAF_BITS) + (node.leaf & ((1 << LEAF_BITS) - 1)) {
-                let triangle = bvh.order[slot as usize] as usize;
+            for slot in node.leaf_range() {
+                let triangle = bvh.order[slot] as usize;
                 seen[triangle] += 1;
                 for v in triangles[triangle] {
                     for o in &open {
@@ -175,6 +231,31 @@ mod tests {
         let leaf = spoilt.nodes.iter().position(|n| n.leaf != 0).unwrap();
         spoilt.nodes[leaf].high[1] -= 0.05;
         assert!(check(&triangles, &spoilt).is_err(), "a box that is too small is seen");
+    }
+
+    /// A tree over other triangles in the same places.
+    fn refitted(bvh: &Bvh, triangles: &[[[f32; 3]; 3]]) -> Bvh {
+        let mut moved = bvh.clone();
+        let corners = |slots: Range<usize>| bvh.order[slots].iter().flat_map(|&old| &triangles[old as usize]);
+        refit(&mut moved.nodes, |slots| box_around(corners(slots)));
+        moved
+    }
+
+    #[test]
+    fn a_refit_bounds_what_moved_and_tells_what_it_costs() {
+        let triangles = soup(1000, 5.0);
+        let built = Bvh::build(&triangles);
+        assert_eq!(refitted(&built, &triangles), built, "nothing moved");
+        let doubled: Vec<_> = triangles.iter().map(|t| t.map(|v| v.map(|x| 2.0 * x))).collect();
+        assert_eq!(cost(&refitted(&built, &doubled).nodes), built.built_cost, "a scale changes no share");
+
+        let elsewhere: Vec<_> = soup(1500, 5.0).into_iter().skip(500).collect();
+        let moved = refitted(&built, &elsewhere);
+        check(&elsewhere, &moved).unwrap();
+        assert!(check(&elsewhere, &built).is_err(), "boxes of the first frame");
+        let anew = cost(&Bvh::build(&elsewhere).nodes);
+        assert!(cost(&moved.nodes) > 5.0 * anew, "neighbours went apart: {} against {anew}", cost(&moved.nodes));
+        assert_eq!(cost(&[]), 0.0);
     }
 
     #[test]

@@ -42,6 +42,18 @@ pub enum SceneError {
         /// How many there are.
         vertices: usize,
     },
+    /// Moved vertices that are not as many as the mesh has.
+    #[error(
+        "mesh '{mesh}': {given} moved vertices given, but its triangles join {expected}; give one position a vertex"
+    )]
+    VertexCount {
+        /// The mesh's name.
+        mesh: String,
+        /// How many were given.
+        given: usize,
+        /// How many there are.
+        expected: usize,
+    },
     /// A number is NaN, infinite or too large for float32 after recentring.
     #[error("{what}: entry {index} is not finite")]
     NotFinite {

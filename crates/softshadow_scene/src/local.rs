@@ -30,6 +30,8 @@ pub struct SubScene {
     pub corners: Vec<Corner>,
     /// Hierarchy; leaves count triangles from the sub-scene's first.
     pub nodes: Vec<BvhNode>,
+    /// The hierarchy's expected work when it was built; a refit is judged by it.
+    pub built_cost: f64,
 }
 
 /// What was left out of the local scene, and why it casts no shadow.
@@ -54,6 +56,8 @@ pub struct LocalScene {
     pub caller_ids: Vec<u32>,
     /// For each local triangle the index of its mesh.
     pub mesh_ids: Vec<u32>,
+    /// For each local triangle the caller's vertices, counted through the meshes, in the order of its corners.
+    pub vertex_ids: Vec<[u32; 3]>,
     /// One material a mesh.
     pub materials: Vec<Material>,
     /// Triangles that were left out.
@@ -70,37 +74,15 @@ impl LocalScene {
     #[must_use]
     pub fn new(scene: &Scene, frame_points: Option<([f64; 3], [f64; 3])>, max_binding_bytes: u64) -> Self {
         let frame = LocalFrame::around(occluder_bounds(scene).or(frame_points));
-        let mut dropped = Dropped::default();
-        let mut rows: Vec<([[f32; 3]; 3], u32, u32)> = Vec::with_capacity(scene.triangle_count());
-        let mut caller_id = 0u32;
-        for (mesh_id, mesh) in scene.meshes().iter().enumerate() {
-            // Adding +0 turns −0 into +0: equal positions must be equal bits.
-            let rounded = |v: &[f64; 3]| (frame.local_from_world(*v).as_vec3() + glam::Vec3::ZERO).to_array();
-            let local: Vec<[f32; 3]> = mesh.vertices.iter().map(rounded).collect();
-            for triangle in &mesh.triangles {
-                let id = caller_id;
-                caller_id += 1;
-                if is_flat(triangle.map(|v| DVec3::from(mesh.vertices[v as usize]))) {
-                    dropped.zero_area += 1;
-                    continue;
-                }
-                let mut corners = triangle.map(|v| local[v as usize]);
-                corners.sort_by(position_order);
-                if corners[0] == corners[1] || corners[1] == corners[2] {
-                    dropped.below_resolution += 1;
-                    continue;
-                }
-                rows.push((corners, id, mesh_id as u32));
-            }
-        }
-        rows.sort_by(|a, b| triangle_order(&a.0, &b.0));
-        let extent = rows.iter().flat_map(|r| r.0.as_flattened()).fold(0f32, |m, x| m.max(x.abs()));
+        let (mut rows, dropped) = placed(scene, &frame);
+        rows.sort_by(|a, b| triangle_order(&a.corners, &b.corners));
         let mut built = Self {
             frame,
-            extent,
+            extent: extent(&rows),
             sub_scenes: Vec::new(),
             caller_ids: Vec::with_capacity(rows.len()),
             mesh_ids: Vec::with_capacity(rows.len()),
+            vertex_ids: Vec::with_capacity(rows.len()),
             materials: scene.meshes().iter().map(|m| m.material).collect(),
             dropped,
         };
@@ -121,19 +103,66 @@ impl LocalScene {
         self.sub_scenes.iter().flat_map(|s| s.corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]].map(|c| c.position)))
     }
 
-    fn append(&mut self, rows: &[([[f32; 3]; 3], u32, u32)]) {
-        let positions: Vec<[[f32; 3]; 3]> = rows.iter().map(|r| r.0).collect();
+    fn append(&mut self, rows: &[Row]) {
+        let positions: Vec<[[f32; 3]; 3]> = rows.iter().map(|r| r.corners).collect();
         let bvh = Bvh::build(&positions);
         let first_triangle = self.caller_ids.len() as u32;
         let mut corners = Vec::with_capacity(rows.len() * 3);
         for (&old, triangle) in bvh.order.iter().zip(first_triangle..) {
-            let (positions, caller_id, mesh_id) = rows[old as usize];
-            corners.extend(positions.map(|position| Corner { position, triangle }));
-            self.caller_ids.push(caller_id);
-            self.mesh_ids.push(mesh_id);
+            let row = &rows[old as usize];
+            corners.extend(row.corners.map(|position| Corner { position, triangle }));
+            self.caller_ids.push(row.caller_id);
+            self.mesh_ids.push(row.mesh_id);
+            self.vertex_ids.push(row.vertex_ids);
         }
-        self.sub_scenes.push(SubScene { first_triangle, corners, nodes: bvh.nodes });
+        self.sub_scenes.push(SubScene { first_triangle, corners, nodes: bvh.nodes, built_cost: bvh.built_cost });
     }
+}
+
+/// A triangle that casts a shadow, in the local frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row {
+    /// Sorted by position.
+    pub(crate) corners: [[f32; 3]; 3],
+    /// The caller's vertices at the corners, counted through the meshes.
+    pub(crate) vertex_ids: [u32; 3],
+    pub(crate) caller_id: u32,
+    pub(crate) mesh_id: u32,
+}
+
+/// The triangles of a scene in a frame, in the caller's order, and what is left out of them.
+pub(crate) fn placed(scene: &Scene, frame: &LocalFrame) -> (Vec<Row>, Dropped) {
+    let mut dropped = Dropped::default();
+    let mut rows = Vec::with_capacity(scene.triangle_count());
+    let (mut caller_id, mut first_vertex) = (0u32, 0u32);
+    for (mesh_id, mesh) in scene.meshes().iter().enumerate() {
+        // Adding +0 turns −0 into +0: equal positions must be equal bits.
+        let rounded = |v: &[f64; 3]| (frame.local_from_world(*v).as_vec3() + glam::Vec3::ZERO).to_array();
+        let local: Vec<[f32; 3]> = mesh.vertices.iter().map(rounded).collect();
+        for triangle in &mesh.triangles {
+            let id = caller_id;
+            caller_id += 1;
+            if is_flat(triangle.map(|v| DVec3::from(mesh.vertices[v as usize]))) {
+                dropped.zero_area += 1;
+                continue;
+            }
+            let mut pairs = triangle.map(|v| (local[v as usize], first_vertex + v));
+            pairs.sort_by(|a, b| position_order(&a.0, &b.0));
+            let (corners, vertex_ids) = (pairs.map(|p| p.0), pairs.map(|p| p.1));
+            if corners[0] == corners[1] || corners[1] == corners[2] {
+                dropped.below_resolution += 1;
+                continue;
+            }
+            rows.push(Row { corners, vertex_ids, caller_id: id, mesh_id: mesh_id as u32 });
+        }
+        first_vertex += mesh.vertices.len() as u32;
+    }
+    (rows, dropped)
+}
+
+/// The largest absolute coordinate.
+pub(crate) fn extent(rows: &[Row]) -> f32 {
+    rows.iter().flat_map(|r| r.corners.as_flattened()).fold(0f32, |m, x| m.max(x.abs()))
 }
 
 /// A hierarchy has at most two nodes a triangle, of 32 bytes, beside the 48 bytes of its corners: nodes fill a binding first.

@@ -47,9 +47,7 @@ impl Mesh {
         material: Material,
     ) -> Result<Self, SceneError> {
         let name = name.into();
-        if let Some(index) = vertices.iter().position(|v| !v.iter().all(|x| x.is_finite())) {
-            return Err(SceneError::NotFinite { what: format!("mesh '{name}' vertices"), index });
-        }
+        check_finite(&name, &vertices)?;
         let count = vertices.len();
         for (triangle, corners) in triangles.iter().enumerate() {
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= count) {
@@ -62,6 +60,19 @@ impl Mesh {
             }
         }
         Ok(Self { name, vertices, triangles, material })
+    }
+
+    /// The same triangles between other vertices.
+    ///
+    /// # Errors
+    /// [`SceneError::VertexCount`] for another number of them, [`SceneError::NotFinite`] names the first without a position.
+    pub fn with_vertices(&self, vertices: Vec<[f64; 3]>) -> Result<Self, SceneError> {
+        let (given, expected) = (vertices.len(), self.vertices.len());
+        if given != expected {
+            return Err(SceneError::VertexCount { mesh: self.name.clone(), given, expected });
+        }
+        check_finite(&self.name, &vertices)?;
+        Ok(Self { name: self.name.clone(), vertices, triangles: self.triangles.clone(), material: self.material })
     }
 
     /// The same mesh with every vertex moved by an affine row-major matrix of column-vector mathematics.
@@ -81,5 +92,12 @@ impl Mesh {
             *v = moved;
         }
         Ok(self)
+    }
+}
+
+fn check_finite(name: &str, vertices: &[[f64; 3]]) -> Result<(), SceneError> {
+    match vertices.iter().position(|v| !v.iter().all(|x| x.is_finite())) {
+        Some(index) => Err(SceneError::NotFinite { what: format!("mesh '{name}' vertices"), index }),
+        None => Ok(()),
     }
 }

@@ -22,6 +22,7 @@ mod hard_shadows;
 mod interleaved;
 mod invariance;
 mod lights;
+mod moving;
 mod pixels;
 mod same_samples;
 mod samples;

@@ -75,6 +75,21 @@ fn uploads_are_kept_while_they_are_used_and_then_given_back() {
 }
 
 #[test]
+fn forgotten_uploads_are_given_back_at_once() {
+    let engine = engine();
+    let (points, others) = (Content::new(&[1; 320]), Content::new(&[2; 320]));
+    let run_with = |points: &Content, given: &[&Content]| {
+        let given = given.iter().map(|content| (content.key, (*content).clone())).collect();
+        engine.run(&Stages(vec![uploaded(points)]), &given, Timing::Device, &mut |_| true).map(|report| report.stages)
+    };
+    assert_eq!((run_with(&points, &[&points]), run_with(&others, &[&others])), (Ok(1), Ok(1)));
+    engine.forget(&[points.key]);
+    assert_eq!(run_with(&points, &[]), Err(contents("points", "its contents were not given")));
+    assert_eq!(run_with(&points, &[&points]), Ok(1));
+    assert_eq!(run_with(&others, &[&others]), Ok(1));
+}
+
+#[test]
 fn a_failed_run_leaves_nothing_on_the_device_that_is_trusted() {
     let engine = engine();
     let points = Content::new(&[1; 320]);

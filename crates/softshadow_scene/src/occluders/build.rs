@@ -81,8 +81,8 @@ impl Occluders {
     /// Builds the hierarchy over the faces, and puts faces and polygons in the order of its leaves.
     fn arrange_faces(&mut self, polygons: &[Polygon]) -> Vec<Polygon> {
         let boxes: Vec<[[f32; 3]; 3]> = polygons.iter().map(|polygon| box_around(polygon.corners())).collect();
-        let Bvh { nodes, order } = Bvh::build(&boxes);
-        self.face_tree.nodes = nodes;
+        let Bvh { nodes, order, built_cost } = Bvh::build(&boxes);
+        self.face_tree = Bvh { nodes, order: Vec::new(), built_cost };
         self.faces = order.iter().map(|&old| self.faces[old as usize]).collect();
         order.iter().map(|&old| polygons[old as usize]).collect()
     }
@@ -108,8 +108,8 @@ impl Occluders {
         let runs: Vec<&[Side]> = sides.chunk_by(|a, b| a.vertices == b.vertices).collect();
         let ends = |run: &[Side]| run[0].vertices.map(|v| corners[weld.representatives[v as usize] as usize]);
         let boxes: Vec<[[f32; 3]; 3]> = runs.iter().map(|run| box_around(&ends(run))).collect();
-        let Bvh { nodes, order } = Bvh::build(&boxes);
-        self.edge_tree.nodes = nodes;
+        let Bvh { nodes, order, built_cost } = Bvh::build(&boxes);
+        self.edge_tree = Bvh { nodes, order: Vec::new(), built_cost };
         self.edges.reserve_exact(runs.len());
         self.incidences.reserve_exact(sides.len());
         for (&old, edge) in order.iter().zip(0u32..) {
@@ -144,7 +144,7 @@ fn canonical(triangle: &[[f32; 3]; 3]) -> [[f32; 3]; 3] {
 }
 
 /// The largest height of a corner over the plane through the first.
-fn flatness(normal: [f32; 3], [point, b, c]: &[[f32; 3]; 3]) -> f32 {
+pub(super) fn flatness(normal: [f32; 3], [point, b, c]: &[[f32; 3]; 3]) -> f32 {
     // The very operations with which a kernel takes a receiver's height over the plane: on a corner it then finds no more than this.
     let height = |corner: &[f32; 3]| Vec3::from(normal).dot(Vec3::from(*corner) - Vec3::from(*point)).abs();
     height(b).max(height(c))
@@ -152,7 +152,7 @@ fn flatness(normal: [f32; 3], [point, b, c]: &[[f32; 3]; 3]) -> f32 {
 
 /// The plane's side that sees the corners run counterclockwise; `None` without an area. The exponents of float32 fit four times
 /// into those of float64, so no product of edges under- or overflows.
-fn unit_normal(corners: &[[f32; 3]; 3]) -> Option<[f32; 3]> {
+pub(super) fn unit_normal(corners: &[[f32; 3]; 3]) -> Option<[f32; 3]> {
     let [a, b, c] = corners.map(widen);
     let area = (b - a).cross(c - a);
     (area != DVec3::ZERO).then(|| area.normalize().as_vec3().to_array())

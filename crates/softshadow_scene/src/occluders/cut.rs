@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 
 /// How far beyond the ball a triangle still counts as touching it, as a part of the radius: well above a rounding of the float32
 /// corners relative to a frame of which the ball is a fair part, and far below anything that a picture shows.
-const TOUCH_MARGIN: f64 = 1e-6;
+pub(super) const TOUCH_MARGIN: f64 = 1e-6;
 
 /// A convex polygon of at most four corners.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,8 +6,12 @@
 
 mod build;
 mod cut;
+mod effect;
+mod moved;
 #[cfg(test)]
 mod tests;
+
+pub use effect::BoundaryEffect;
 
 use crate::bvh::Bvh;
 

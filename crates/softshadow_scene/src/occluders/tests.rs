@@ -1,5 +1,6 @@
 //! What must hold for the occluders of any triangles, and what must be left of chosen ones.
 
+mod effects;
 mod rules;
 
 use rules::{check, check_winding, corners, sides};

@@ -6,10 +6,12 @@
 
 mod leaves;
 mod shapes;
+mod waving;
 
 use serde::Deserialize;
 
 pub use self::shapes::{Placed, Shape};
+pub use self::waving::waving;
 use crate::error::SceneError;
 use crate::mesh::{Material, Mesh};
 use crate::scene::Scene;

@@ -1,8 +1,8 @@
 //! What hides one light, as the kernels read it: faces, edges, and a hierarchy over the faces.
 
 use softshadow_plan::Content;
-use softshadow_scene::occluders::{LightBoundary, NO_SIDE, Occluders};
-use softshadow_scene::{BvhNode, Light, LightFrame, LocalScene, SceneError};
+use softshadow_scene::occluders::{BoundaryEffect, LightBoundary, NO_SIDE, Occluders};
+use softshadow_scene::{BvhNode, Light, LightFrame, LocalScene, Rebuild, SceneError};
 
 /// `Face` of `occluders.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -54,25 +54,15 @@ pub struct OccluderContents {
     pub cut_triangles: usize,
     /// Triangles behind the light.
     pub triangles_behind: usize,
+    /// What the bytes were made of, for the next frame of a scene that moves.
+    occluders: Occluders,
 }
 
 /// Where a light makes geometry stop; nowhere when all of it is in front, so that lights share what is made of a scene.
 #[must_use]
 pub fn boundary_of(local: &LocalScene, light: &Light) -> LightBoundary {
     let boundary = LightFrame::new(light, &local.frame).boundary;
-    let corners = || local.triangles().flatten().map(|v| glam::DVec3::from(v.map(f64::from)));
-    let is_in_front = match boundary {
-        LightBoundary::None => true,
-        LightBoundary::Plane { point, normal } => {
-            corners().all(|v| glam::DVec3::from(normal).dot(v - glam::DVec3::from(point)) > 0.0)
-        }
-        // A triangle can touch a ball between its corners: only far away it cannot.
-        LightBoundary::Ball { center, radius } => {
-            let far = radius * (1.0 + 1e-6) + 2.0 * f64::from(local.extent) * 3f64.sqrt();
-            corners().all(|v| v.distance(glam::DVec3::from(center)) > far)
-        }
-    };
-    if is_in_front { LightBoundary::None } else { boundary }
+    if boundary.effect(local).is_none() { LightBoundary::None } else { boundary }
 }
 
 impl OccluderContents {
@@ -89,10 +79,24 @@ impl OccluderContents {
             let reason = format!("{count} triangles touch it; move them apart, or trace rays");
             return Err(SceneError::Invalid { what: "sphere light".into(), reason });
         }
-        Ok(Self::lay_out(&occluders, boundary))
+        Ok(Self::lay_out(occluders, boundary))
     }
 
-    fn lay_out(occluders: &Occluders, boundary: LightBoundary) -> Self {
+    /// What becomes of these contents of `from` in `to`, a later frame of it, for a light with this boundary and effect on `to`.
+    ///
+    /// # Errors
+    /// [`Rebuild`] says why they have to be made anew.
+    pub fn moved(
+        &self,
+        from: &LocalScene,
+        to: &LocalScene,
+        boundary: LightBoundary,
+        effect: &BoundaryEffect,
+    ) -> Result<Self, Rebuild> {
+        Ok(Self::lay_out(self.occluders.moved(from, to, effect)?, boundary))
+    }
+
+    fn lay_out(occluders: Occluders, boundary: LightBoundary) -> Self {
         let face = |f: &softshadow_scene::occluders::Face| FaceRecord {
             normal: f.normal,
             triangle: f.triangle,
@@ -130,6 +134,7 @@ impl OccluderContents {
             edge_count: occluders.edges.len() as u32,
             cut_triangles: occluders.cut,
             triangles_behind: occluders.behind,
+            occluders,
         }
     }
 
