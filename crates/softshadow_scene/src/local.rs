@@ -39,6 +39,8 @@ pub struct Dropped {
     pub zero_area: usize,
     /// Triangles whose corners coincide once rounded to local float32.
     pub below_resolution: usize,
+    /// Triangles of opacity 0: nobody sees them, and they hide nothing.
+    pub invisible: usize,
 }
 
 /// A scene in its local frame.
@@ -56,6 +58,8 @@ pub struct LocalScene {
     pub mesh_ids: Vec<u32>,
     /// One material a mesh.
     pub materials: Vec<Material>,
+    /// For each local triangle its opacity; empty where all are opaque.
+    pub opacities: Vec<f32>,
     /// Triangles that were left out.
     pub dropped: Dropped,
 }
@@ -71,13 +75,13 @@ impl LocalScene {
     pub fn new(scene: &Scene, frame_points: Option<([f64; 3], [f64; 3])>, max_binding_bytes: u64) -> Self {
         let frame = LocalFrame::around(occluder_bounds(scene).or(frame_points));
         let mut dropped = Dropped::default();
-        let mut rows: Vec<([[f32; 3]; 3], u32, u32)> = Vec::with_capacity(scene.triangle_count());
+        let mut rows: Vec<Row> = Vec::with_capacity(scene.triangle_count());
         let mut caller_id = 0u32;
         for (mesh_id, mesh) in scene.meshes().iter().enumerate() {
             // Adding +0 turns −0 into +0: equal positions must be equal bits.
             let rounded = |v: &[f64; 3]| (frame.local_from_world(*v).as_vec3() + glam::Vec3::ZERO).to_array();
             let local: Vec<[f32; 3]> = mesh.vertices.iter().map(rounded).collect();
-            for triangle in &mesh.triangles {
+            for (index, triangle) in mesh.triangles.iter().enumerate() {
                 let id = caller_id;
                 caller_id += 1;
                 if is_flat(triangle.map(|v| DVec3::from(mesh.vertices[v as usize]))) {
@@ -90,11 +94,16 @@ impl LocalScene {
                     dropped.below_resolution += 1;
                     continue;
                 }
-                rows.push((corners, id, mesh_id as u32));
+                let opacity = mesh.opacity(index);
+                if opacity <= 0.0 {
+                    dropped.invisible += 1;
+                    continue;
+                }
+                rows.push(Row { corners, caller_id: id, mesh_id: mesh_id as u32, opacity });
             }
         }
-        rows.sort_by(|a, b| triangle_order(&a.0, &b.0));
-        let extent = rows.iter().flat_map(|r| r.0.as_flattened()).fold(0f32, |m, x| m.max(x.abs()));
+        rows.sort_by(|a, b| triangle_order(&a.corners, &b.corners));
+        let extent = rows.iter().flat_map(|r| r.corners.as_flattened()).fold(0f32, |m, x| m.max(x.abs()));
         let mut built = Self {
             frame,
             extent,
@@ -102,10 +111,14 @@ impl LocalScene {
             caller_ids: Vec::with_capacity(rows.len()),
             mesh_ids: Vec::with_capacity(rows.len()),
             materials: scene.meshes().iter().map(|m| m.material).collect(),
+            opacities: Vec::new(),
             dropped,
         };
         for chunk in rows.chunks(triangles_per_binding(max_binding_bytes)) {
             built.append(chunk);
+        }
+        if built.opacities.iter().all(|opacity| *opacity >= 1.0) {
+            built.opacities = Vec::new();
         }
         built
     }
@@ -116,24 +129,39 @@ impl LocalScene {
         self.caller_ids.len()
     }
 
+    /// Opacity of a triangle.
+    #[must_use]
+    pub fn opacity(&self, triangle: usize) -> f32 {
+        self.opacities.get(triangle).copied().unwrap_or(1.0)
+    }
+
     /// All triangles in order, as three positions each.
     pub fn triangles(&self) -> impl Iterator<Item = [[f32; 3]; 3]> + '_ {
         self.sub_scenes.iter().flat_map(|s| s.corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]].map(|c| c.position)))
     }
 
-    fn append(&mut self, rows: &[([[f32; 3]; 3], u32, u32)]) {
-        let positions: Vec<[[f32; 3]; 3]> = rows.iter().map(|r| r.0).collect();
+    fn append(&mut self, rows: &[Row]) {
+        let positions: Vec<[[f32; 3]; 3]> = rows.iter().map(|r| r.corners).collect();
         let bvh = Bvh::build(&positions);
         let first_triangle = self.caller_ids.len() as u32;
         let mut corners = Vec::with_capacity(rows.len() * 3);
         for (&old, triangle) in bvh.order.iter().zip(first_triangle..) {
-            let (positions, caller_id, mesh_id) = rows[old as usize];
-            corners.extend(positions.map(|position| Corner { position, triangle }));
-            self.caller_ids.push(caller_id);
-            self.mesh_ids.push(mesh_id);
+            let row = &rows[old as usize];
+            corners.extend(row.corners.map(|position| Corner { position, triangle }));
+            self.caller_ids.push(row.caller_id);
+            self.mesh_ids.push(row.mesh_id);
+            self.opacities.push(row.opacity);
         }
         self.sub_scenes.push(SubScene { first_triangle, corners, nodes: bvh.nodes });
     }
+}
+
+/// A triangle on its way into the local scene.
+struct Row {
+    corners: [[f32; 3]; 3],
+    caller_id: u32,
+    mesh_id: u32,
+    opacity: f32,
 }
 
 /// A hierarchy has at most two nodes a triangle, of 32 bytes, beside the 48 bytes of its corners: nodes fill a binding first.
@@ -235,14 +263,35 @@ mod tests {
         triangles.insert(0, [1, 1, 2]);
         triangles.insert(3, [0, 3, 3]);
         let scene = local(vertices, triangles);
-        assert_eq!(scene.dropped, Dropped { zero_area: 2, below_resolution: 0 });
+        assert_eq!(scene.dropped, Dropped { zero_area: 2, ..Dropped::default() });
         let mut ids = scene.caller_ids.clone();
         ids.sort_unstable();
         assert_eq!(ids, [1, 2, 4, 5, 6, 7, 8, 9]);
 
         let tiny = vec![[0.0; 3], [1e-12, 0.0, 0.0], [0.0, 1e-12, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let scene = local(tiny, vec![[0, 1, 2], [0, 3, 4]]);
-        assert_eq!(scene.dropped, Dropped { zero_area: 0, below_resolution: 1 });
+        assert_eq!(scene.dropped, Dropped { below_resolution: 1, ..Dropped::default() });
+    }
+
+    #[test]
+    fn opacities_go_with_their_triangles_and_the_invisible_are_left_out() {
+        let (vertices, triangles) = grid(9, 1.0, [0.0; 3]);
+        let mesh = Mesh::new("grid", vertices, triangles, Material::default()).unwrap();
+        let of = |opacity: &dyn Fn(usize) -> f32| {
+            let opacities = (0..162).map(opacity).collect();
+            let mesh = mesh.clone().with_opacities(opacities).unwrap();
+            LocalScene::new(&Scene::new(vec![mesh]).unwrap(), None, 64 * 30)
+        };
+        // Opaque scenes carry none.
+        let opaque = of(&|_| 1.0);
+        assert!(opaque.opacities.is_empty() && opaque.opacity(3) == 1.0);
+        let graded = of(&|index| index as f32 / 200.0);
+        assert_eq!((graded.dropped.invisible, graded.triangle_count()), (1, 161));
+        for (triangle, id) in graded.caller_ids.iter().enumerate() {
+            assert_eq!(graded.opacity(triangle), *id as f32 / 200.0);
+        }
+        let holes = of(&|index| if index % 3 == 0 { 0.0 } else { 1.0 });
+        assert!(holes.opacities.is_empty() && holes.triangle_count() == 108);
     }
 
     #[test]

@@ -218,7 +218,10 @@ fn lists_of_edges_lie_as_plans_say() {
     // A list's head is two words for each of a tile's two parts; a chunk is the next one, a count, and edges.
     let tiles = shader("depth_complexity/tiles.wgsl");
     assert!(tiles.contains("return 4u * tile_count;"));
-    assert!(source("src/depth_complexity/tiled.rs").contains("u64::from(tile_count) * (16 + CHUNKS_PER_TILE * CHUNK_BYTES)"));
+    assert!(
+        source("src/depth_complexity/tiled.rs")
+            .contains("u64::from(tile_count) * (16 + CHUNKS_PER_TILE * CHUNK_BYTES)")
+    );
     let of = |name| constant(tiles, name).unwrap();
     assert_eq!(of("CHUNK"), of("CHUNK_EDGES") + 2);
     // A cluster, and a group of them, has a bit for each.

@@ -11,6 +11,8 @@ mod tests;
 
 use crate::bvh::Bvh;
 
+pub use build::attenuation;
+
 /// Attenuation of a face that lets nothing through.
 pub const OPAQUE: u32 = u32::MAX;
 
