@@ -4,6 +4,7 @@
 //#import depth_complexity/edge.wgsl
 //#import depth_complexity/horizon.wgsl
 //#import depth_complexity/counters.wgsl
+//#import depth_complexity/attenuation.wgsl
 //#import depth_complexity/area.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/walk.wgsl
@@ -20,6 +21,9 @@
 @group(0) @binding(9) var<storage, read> lists: array<u32>;
 @group(0) @binding(11) var<storage, read_write> counts: ListCounts;
 @group(0) @binding(10) var<storage, read_write> areas: array<f32>;
+@group(0) @binding(12) var<uniform> attenuation_scale: AttenuationScale;
+@group(0) @binding(13) var<storage, read> triangle_attenuation: array<u32>;
+@group(0) @binding(14) var<storage, read_write> sample_transmittance: array<f32>;
 
 struct Outline {
     corners: array<vec4<f32>, 64>,
@@ -81,13 +85,9 @@ fn area_beyond(image: EdgeImage) -> f32 {
 
 fn folded(before: Sums, image: EdgeImage, change: i32, mask: vec2<u32>, wants_area: bool) -> Sums {
     var sums = before;
-    let size = u32(abs(change));
-    let bit = vec3<u32>(size & 1u, (size >> 1u) & 1u, (size >> 2u) & 1u) * 0xffffffffu;
-    let borrow = vec2<u32>(select(0u, 0xffffffffu, change < 0));
-    sums.counters = counters_add(sums.counters, mask & vec2<u32>(bit.x), mask & vec2<u32>(bit.y), mask & vec2<u32>(bit.z), borrow);
-    // More faces than that at one edge: counted as more than any counter holds.
-    sums.changes += select(size, LARGEST_COUNT + 1u, size > 7u);
-    sums.smallest = min(sums.smallest, size);
+    sums.counters = counters_change(sums.counters, mask, change);
+    sums.changes += most_change(change);
+    sums.smallest = min(sums.smallest, u32(abs(change)));
     if (wants_area) {
         let beyond = area_beyond(image);
         sums.area += i32(round(beyond * AREA_UNITS)) * change;
@@ -260,6 +260,114 @@ fn fold(
         chunk = lists[at];
     }
     finish(sums, view, receiver, task, wants_area);
+    if (chunk != 0u || !has_steps_left()) {
+        atomicAdd(&counts.unfinished, 1u);
+    }
+}
+
+// Layers, opaque and in units of attenuation.
+struct Layers {
+    opaque: i32,
+    attenuation: i32,
+}
+
+// As `weight`, of both kinds of layers.
+fn weight_of_both(view: FrameView, edge: OccluderEdge, triangle: u32) -> Layers {
+    var sum = Layers(0, 0);
+    for (var k = 0u; k < face_count(edge); k++) {
+        let face = incident_faces[edge.first_incidence + k];
+        let units = triangle_attenuation[face.reference >> 1u];
+        let turn = turned(side_of_plane(face.normal, face.point, face.flatness, view.position), face);
+        let left = select(turn, 0, (face.reference >> 1u) == triangle);
+        sum.opaque += select(0, left, units == OPAQUE);
+        sum.attenuation += select(left * i32(units), 0, units == OPAQUE);
+    }
+    return sum;
+}
+
+// What the edges of one receiver add up to where some of what they border lets light through.
+struct AttenuatedSums {
+    counters: Counters,
+    attenuation: Attenuation,
+    changes: u32,           // by how much D can have changed at most
+    most: u32,              // and the attenuation
+}
+
+fn attenuated(before: AttenuatedSums, change: Layers, faces: u32, mask: vec2<u32>) -> AttenuatedSums {
+    var sums = before;
+    sums.counters = counters_change(sums.counters, mask, change.opaque);
+    sums.attenuation = attenuation_add(sums.attenuation, mask, change.attenuation);
+    sums.changes += most_change(change.opaque);
+    let most = select(u32(abs(change.attenuation)), LARGEST_ATTENUATION + 1u, faces > MOST_ATTENUATING_FACES);
+    sums.most = min(sums.most, LARGEST_ATTENUATION + 1u) + most;
+    return sums;
+}
+
+fn finish_attenuated(sums: AttenuatedSums, view: FrameView, receiver: Receiver, task: Task) {
+    let first = task.group * 64u;
+    let count = min(64u, light_frame.sample_count - first);
+    let slope = horizon_slope(view, receiver);
+    let crossing = select(count, 0u, is_above_horizon(light_frame, receiver, slope));
+    let hidden = counters_nonzero(sums.counters) | below_horizon(view, slope, first, crossing);
+    let at = slots[task.slot].receiver * light_frame.sample_count + first;
+    for (var k = 0u; k < count; k++) {
+        let passes = passed(attenuation_scale, attenuation_of(sums.attenuation, k));
+        sample_transmittance[at + k] = select(passes, 0.0, digit_of(hidden, k, 0u) != 0u);
+    }
+    if (sums.changes > LARGEST_COUNT) {
+        atomicAdd(&counts.unfinished, 1u);
+    }
+    if (sums.most > LARGEST_ATTENUATION) {
+        atomicAdd(&counts.overflowed, 1u);
+    }
+}
+
+// As `fold`, where some faces are semi-opaque. Samples answer: an area under a layer that lets light through is no visibility.
+@compute @workgroup_size(64)
+fn fold_attenuated(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
+    }
+    let slot = slots[task.slot];
+    let receiver = receivers[slot.receiver];
+    let view = frame_view(light_frame, receiver.position);
+    let first = task.group * 64u;
+    let count = min(64u, light_frame.sample_count - first);
+    var sums = AttenuatedSums(
+        counters_at(slot.depth), attenuation_at(slot.attenuation), u32(abs(slot.depth)), u32(abs(slot.attenuation))
+    );
+    let base = first_chunk_word(fold_settings.tile_count);
+    var chunk = task.chunk;
+    var steps = 0u;
+    while (chunk != 0u && steps < MOST_STEPS) {
+        let at = base + chunk * CHUNK;
+        let end = lists[at + 1u];
+        for (var k = 0u; k < end; k++) {
+            steps++;
+            let edge = edges[lists[at + 2u + k]];
+            let image = before_limit(view, edge, edge_image(view, edge));
+            if (image_matters(light_frame, image)) {
+                let weight = weight_of_both(view, edge, receiver.triangle);
+                steps += face_count(edge);
+                if (weight.opaque != 0 || weight.attenuation != 0) {
+                    steps += count / 8u + 1u;
+                    let mask = crossed_exactly(view, image, first, count);
+                    let sign = select(1, -1, image.left);
+                    let change = Layers(weight.opaque * sign, weight.attenuation * sign);
+                    if ((mask.x | mask.y) != 0u) {
+                        sums = attenuated(sums, change, face_count(edge), mask);
+                    }
+                }
+            }
+        }
+        chunk = lists[at];
+    }
+    finish_attenuated(sums, view, receiver, task);
     if (chunk != 0u || !has_steps_left()) {
         atomicAdd(&counts.unfinished, 1u);
     }

@@ -8,6 +8,7 @@
 //#import depth_complexity/edge.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/tree.wgsl
+//#import depth_complexity/attenuation.wgsl
 
 @group(0) @binding(0) var<uniform> slice: Slice;
 @group(0) @binding(1) var<uniform> light_frame: LightFrame;
@@ -19,6 +20,7 @@
 @group(0) @binding(7) var<storage, read_write> slots: array<Slot>;
 @group(0) @binding(8) var<storage, read_write> blocked: array<u32>;
 @group(0) @binding(9) var<storage, read_write> counts: ListCounts;
+@group(0) @binding(10) var<storage, read> triangle_attenuation: array<u32>;
 
 // Two directions with a smaller sine between them are one, or opposite.
 const NO_TURN: f32 = 1e-6;
@@ -129,4 +131,52 @@ fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
     for (var word = 0u; word < select(0u, words, depth != 0); word++) {
         blocked[slot.receiver * words + word] = 0xffffffffu;
     }
+}
+
+// As `reference_depth`, of opaque and semi-opaque faces apart; what that makes of the samples is another pass.
+@compute @workgroup_size(64)
+fn reference_depth_attenuated(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x >= slice.count) {
+        return;
+    }
+    let at = slice.first + invocation.x;
+    let slot = slots[at];
+    if (slot.depth == NO_VIEW || parts[2u * (at / TILE) + slot.part].has_faces == 0u) {
+        return;
+    }
+    let receiver = receivers[slot.receiver];
+    let view = frame_view(light_frame, receiver.position);
+    var depth = 0;
+    var attenuation = 0;
+    var most = 0u;
+    var node = 0u;
+    var steps = 0u;
+    while (node < arrayLength(&face_tree) && steps < LONGEST_WALK) {
+        steps++;
+        let box = face_tree[node];
+        let met = way_meets(view.position, view.way, box);
+        node = select(box.skip, node + 1u, met && box.leaf == 0u);
+        let first = box.leaf >> LEAF_BITS;
+        let count = select(0u, box.leaf & ((1u << LEAF_BITS) - 1u), met);
+        for (var k = first; k < first + count; k++) {
+            let face = faces[k];
+            if (face.triangle != receiver.triangle) {
+                let units = triangle_attenuation[face.triangle];
+                let times = cover(view, face);
+                depth += select(0, times, units == OPAQUE);
+                if (units != OPAQUE && times != 0 && most <= LARGEST_ATTENUATION) {
+                    attenuation += times * i32(units);
+                    most += units;
+                }
+            }
+        }
+    }
+    if (node < arrayLength(&face_tree) || !has_steps_left()) {
+        atomicAdd(&counts.unfinished, 1u);
+    }
+    if (most > LARGEST_ATTENUATION) {
+        atomicAdd(&counts.overflowed, 1u);
+    }
+    slots[at].depth = depth;
+    slots[at].attenuation = attenuation;
 }

@@ -12,6 +12,7 @@
 @group(0) @binding(5) var<storage, read_write> standard_error: array<f32>;
 @group(0) @binding(6) var<storage, read> sample_radiance: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read> areas: array<f32>;
+@group(0) @binding(8) var<storage, read> sample_transmittance: array<f32>;
 
 // Welford's update of mean and standard error with the value of one more pass. The standard error's slot holds the sum of
 // squared deviations until the last pass.
@@ -114,4 +115,69 @@ fn resolve_textured(@builtin(global_invocation_id) invocation: vec3<u32>) {
     accumulate(3u * index, value.x, known);
     accumulate(3u * index + 1u, value.y, known);
     accumulate(3u * index + 2u, value.z, known);
+}
+
+// Mean and standard error of samples between 0 and 1, from their weighted moments about one of them: of samples that are 0 or 1 that is
+// the binomial estimate.
+struct Moments {
+    whole: vec3<f32>,
+    first: vec3<f32>,
+    second: vec3<f32>,
+}
+
+fn moments_with(before: Moments, weight: vec3<f32>, difference: f32) -> Moments {
+    let first = weight * difference;
+    return Moments(before.whole + weight, before.first + first, before.second + first * difference);
+}
+
+fn mean_of(moments: Moments) -> vec3<f32> {
+    return moments.first / max(moments.whole, vec3<f32>(1e-37));
+}
+
+fn error_of(moments: Moments, known: u32) -> vec3<f32> {
+    let mean = mean_of(moments);
+    let squares = max(moments.second / max(moments.whole, vec3<f32>(1e-37)) - mean * mean, vec3<f32>(0.0));
+    return select(sqrt(squares / f32(max(known, 2u) - 1u)), vec3<f32>(0.5), known < 2u);
+}
+
+// The mean of what passes to the samples.
+@compute @workgroup_size(64)
+fn resolve_attenuated(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x >= slice.count) {
+        return;
+    }
+    let index = slice.first + invocation.x;
+    let known = known_samples(index);
+    let at = index * sampling.count;
+    let about = sample_transmittance[at];
+    var moments = Moments(vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0));
+    for (var sample = 0u; sample < known; sample++) {
+        moments = moments_with(moments, vec3<f32>(1.0), sample_transmittance[at + sample] - about);
+    }
+    accumulate_with_error(index, about + mean_of(moments).x, error_of(moments, known).x);
+}
+
+// Textured light: V = Σ L·passes / Σ L by channel; a channel without light returns the mean of what passes.
+@compute @workgroup_size(64)
+fn resolve_attenuated_textured(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x >= slice.count) {
+        return;
+    }
+    let index = slice.first + invocation.x;
+    let known = known_samples(index);
+    let at = index * sampling.count;
+    let about = sample_transmittance[at];
+    var plain = Moments(vec3<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0));
+    var weighted = plain;
+    for (var sample = 0u; sample < known; sample++) {
+        let difference = sample_transmittance[at + sample] - about;
+        plain = moments_with(plain, vec3<f32>(1.0), difference);
+        weighted = moments_with(weighted, sample_radiance[sample].xyz, difference);
+    }
+    let has_light = weighted.whole > vec3<f32>(0.0);
+    let value = about + select(mean_of(plain), mean_of(weighted), has_light);
+    let error = select(error_of(plain, known), error_of(weighted, known), has_light);
+    accumulate_with_error(3u * index, value.x, error.x);
+    accumulate_with_error(3u * index + 1u, value.y, error.y);
+    accumulate_with_error(3u * index + 2u, value.z, error.z);
 }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use softshadow_engine::{AdapterInfo, PassTime, RunReport};
+use softshadow_scene::{LocalScene, Scene};
 use softshadow_techniques::Technique;
 
 /// Adapter, technique, cost, and how well the values are known.
@@ -43,7 +44,9 @@ pub struct Info {
     pub zero_area_triangles: usize,
     /// Triangles that vanish in local float32, left out.
     pub unresolved_triangles: usize,
-    /// What the scene's file holds that is not modelled.
+    /// Triangles of opacity 0, left out.
+    pub invisible_triangles: usize,
+    /// What the scene's file holds that is not modelled, and what the technique does not.
     pub notes: Vec<String>,
     /// `statistical`: values have a standard error. `none`: nothing is known about their error.
     pub error_kind: &'static str,
@@ -60,4 +63,12 @@ impl Info {
         self.bytes = run.bytes;
         self.submissions = run.submissions;
     }
+}
+
+/// What a result does not model of its scene, in words.
+pub(crate) fn notes(scene: &Scene, technique: &Technique, local: &LocalScene) -> Vec<String> {
+    let semi_opaque = local.opacities.iter().filter(|opacity| **opacity < 1.0).count();
+    let taken = (semi_opaque > 0 && matches!(technique, Technique::HardShadowMap(_)))
+        .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: hard_shadow_map knows no others"));
+    scene.notes().iter().cloned().chain(taken).collect()
 }

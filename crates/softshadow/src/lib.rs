@@ -37,7 +37,9 @@ pub use softshadow_scene::{
     Camera, Dropped, Light, LightShape, LightTexture, Material, Mesh, Points, Receivers, SamplePattern, Scene,
     SceneError, UpAxis, look_at, procedural, scene_file,
 };
-pub use softshadow_techniques::{DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError};
+pub use softshadow_techniques::{
+    Attenuation, DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError,
+};
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};
 
 /// Asked between pieces of work with what is done and what there is in all; returning `false` stops the call.

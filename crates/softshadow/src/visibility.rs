@@ -18,7 +18,7 @@ use softshadow_techniques::{
 use crate::Progress;
 use crate::context::Context;
 use crate::error::Error;
-use crate::info::Info;
+use crate::info::{Info, notes};
 
 /// What a caller may want beside the values, and how much memory a call may take.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,8 @@ pub struct Options {
     pub standard_error: bool,
     /// Return the receivers as every technique used them.
     pub receivers: bool,
-    /// Return which samples were blocked, of the last progressive pass. Only techniques that trace every sample have them.
+    /// Return which samples were blocked, of the last progressive pass: those to which nothing passes. Only techniques that trace
+    /// every sample have them.
     pub sample_masks: bool,
     /// How passes are timed.
     pub timing: Timing,
@@ -83,7 +84,8 @@ pub struct Placed {
     pub triangles: Vec<i64>,
 }
 
-/// One bit a sample, set where the sample is blocked.
+/// One bit a sample, set where the sample is blocked: where nothing passes to it. Semi-opaque triangles alone block none, unless what
+/// passes them is nothing in float32.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SampleMasks {
     /// Words of 32 bits a receiver; sample `i` is bit `i % 32` of word `i / 32`.
@@ -153,15 +155,7 @@ pub(crate) fn run(
         Receivers::Points(points) => ReceiverSource::Points(points),
     };
     let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
-    let most = receivers_per_block(
-        technique,
-        options,
-        channels,
-        picture.is_some(),
-        &host,
-        source.row(),
-        contents.local.sub_scenes.len(),
-    )?;
+    let most = receivers_per_block(technique, options, channels, picture.is_some(), &host, source.row(), &contents)?;
     let occluders = match technique.wants_occluders() {
         true => context.occluders(scene, &contents, lights)?,
         false => Vec::new(),
@@ -197,6 +191,12 @@ pub(crate) fn run(
         }
         on_progress(done, total)
     })?;
+    if collector.overflowed > 0 {
+        let count = collector.overflowed;
+        return Err(Error::Gpu(format!(
+            "{count} receivers have more semi-opaque layers before them than sums of depth_complexity hold; use ray_traced"
+        )));
+    }
     if collector.unfinished > 0 {
         let count = collector.unfinished;
         return Err(Error::Gpu(match technique {
@@ -228,9 +228,10 @@ fn receivers_per_block(
     picture: bool,
     host: &softshadow_plan::Host,
     row: usize,
-    sub_scenes: usize,
+    scene: &SceneContents,
 ) -> Result<usize, Error> {
-    let technique_bytes = technique.bytes_per_receiver(channels as u64, sub_scenes as u64);
+    let sub_scenes = scene.local.sub_scenes.len() as u64;
+    let technique_bytes = technique.bytes_per_receiver(channels as u64, sub_scenes, scene.opacity.is_some());
     // Rays of a block are bounded, so that a dispatch over them ends in time and a caller can stop between blocks.
     let most_for_rays = RAYS_PER_BLOCK / u64::from(technique.samples()).max(1);
     // The receiver, the point it came from, and the picture's colour.
@@ -260,6 +261,8 @@ struct Collector<'a> {
     caller_ids: &'a [u32],
     /// Rays that the driver cut short.
     unfinished: u64,
+    /// Receivers with more attenuation than a sum holds.
+    overflowed: u64,
 }
 
 impl<'a> Collector<'a> {
@@ -300,7 +303,8 @@ impl<'a> Collector<'a> {
             blocks: 0,
             zero_area_triangles: contents.local.dropped.zero_area,
             unresolved_triangles: contents.local.dropped.below_resolution,
-            notes: scene.notes().to_vec(),
+            invisible_triangles: contents.local.dropped.invisible,
+            notes: notes(scene, technique, &contents.local),
             error_kind: if has_error { "statistical" } else { "none" },
             standard_error: None,
             plan: String::new(),
@@ -330,7 +334,7 @@ impl<'a> Collector<'a> {
             info,
         };
         let frame = contents.local.frame;
-        Self { result, colors: Vec::new(), frame, caller_ids: &contents.local.caller_ids, unfinished: 0 }
+        Self { result, colors: Vec::new(), frame, caller_ids: &contents.local.caller_ids, unfinished: 0, overflowed: 0 }
     }
 
     fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Vec<u8>>) {
@@ -351,6 +355,7 @@ impl<'a> Collector<'a> {
             self.result.info.silhouette_edges += u64::from(counts[2]);
             self.unfinished += u64::from(counts[3]);
             self.result.info.area_receivers += u64::from(counts[4]);
+            self.overflowed += u64::from(counts[5]);
         }
         let (count, channels) = (self.result.receivers, self.result.channels);
         let copy = |label: &str, width: usize, into: &mut [f32]| {

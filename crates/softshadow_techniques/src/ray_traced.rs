@@ -2,7 +2,8 @@
 //!
 //! The reference on the GPU. For a receiver p and each light sample s, the segment from p to s is traced through a hierarchy
 //! until anything is hit; V is the share of samples that are visible. Blocked is what lies below the receiver's horizon, what
-//! is hidden by any triangle but the receiver's own, and everything behind a one-sided light.
+//! is hidden by any triangle but the receiver's own, and everything behind a one-sided light. In scenes with semi-opaque triangles a ray
+//! goes on to the first opaque one, and V is the mean over the samples of what passes: the product of 1 − opacity over the triangles crossed.
 //!
 //! **Parameters.** `samples` a pass; their `pattern` and `seed`; `passes`, averaged, each with its own samples, from whose
 //! spread the standard error comes; `probes`: that many samples first, and all of them only where they disagree among
@@ -24,7 +25,7 @@ use crate::TechniqueError;
 use crate::parts::light_buffers::{self, SampleSet, Sampling};
 use crate::parts::pattern_name;
 use crate::parts::resolve::{BLOCKED, Masks};
-use crate::parts::{receivers, resolve, scene_buffers, shading};
+use crate::parts::{opacity, receivers, resolve, scene_buffers, shading};
 use crate::request::{ReceiverSource, Request};
 
 /// Settings of `ray_traced`.
@@ -59,6 +60,8 @@ const NARROW: Kernel = Kernel { file: "ray_traced/narrow.wgsl", entry: "narrow" 
 const COUNT_GROUPS: Kernel = Kernel { file: "ray_traced/count_groups.wgsl", entry: "count_groups" };
 const TRACE: Kernel = Kernel { file: "ray_traced/trace.wgsl", entry: "trace" };
 const CHOOSE: Kernel = Kernel { file: "ray_traced/choose.wgsl", entry: "choose" };
+const TRACE_ATTENUATED: Kernel = Kernel { file: "ray_traced/trace.wgsl", entry: "trace_attenuated" };
+const CHOOSE_ATTENUATED: Kernel = Kernel { file: "ray_traced/choose.wgsl", entry: "choose_attenuated" };
 
 /// `TraceRange` of `hierarchy.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -98,9 +101,10 @@ impl RayTraced {
         Ok(())
     }
 
-    pub(crate) fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64) -> u64 {
+    pub(crate) fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64, is_semi_opaque: bool) -> u64 {
+        let passes = if is_semi_opaque { opacity::bytes_per_receiver(self.samples) } else { 0 };
         // Masks, the number of samples decided, both lists of candidates, values and their errors.
-        u64::from(self.words()) * 4 + 4 + 2 * sub_scenes * CANDIDATE_BYTES + 8 * channels
+        u64::from(self.words()) * 4 + 4 + 2 * sub_scenes * CANDIDATE_BYTES + 8 * channels + passes
     }
 
     fn words(&self) -> u32 {
@@ -139,6 +143,10 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
         .bind("blocked", blocked)
         .bind("decided", decided);
 
+    let attenuated = request.scene.opacity.as_ref().map(|contents| Attenuated {
+        triangles: plan.uploaded(opacity::TRIANGLE_TRANSMITTANCE, &contents.transmittances),
+        samples: opacity::append(&mut plan, request, settings.samples, light.sampling, blocked),
+    });
     if !request.scene.local.sub_scenes.is_empty() {
         let corners = match plan.find("corners 0") {
             Some(_) => (0..request.scene.corners.len()).filter_map(|i| plan.find(&format!("corners {i}"))).collect(),
@@ -191,8 +199,9 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
             for index in 0..corners.len() {
                 let trace_range = range(plan, stage, index);
                 let groups = size(plan, stage, index, trace_range, candidates[index]);
-                plan.compute(format!("{stage} {index}"), why, TRACE, Over::Indirect(groups))
-                    .bind("light", light.light)
+                let kernel = if attenuated.is_some() { TRACE_ATTENUATED } else { TRACE };
+                let pass = plan.compute(format!("{stage} {index}"), why, kernel, Over::Indirect(groups));
+                pass.bind("light", light.light)
                     .bind("sampling", light.sampling)
                     .bind("trace_range", trace_range)
                     .bind("receivers", receivers)
@@ -200,15 +209,29 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
                     .bind("nodes", nodes[index])
                     .bind("corners", corners[index])
                     .bind("decided", decided)
-                    .bind("candidates", candidates[index])
-                    .bind("blocked", blocked);
+                    .bind("candidates", candidates[index]);
+                match &attenuated {
+                    Some(passing) => pass
+                        .bind("triangle_transmittance", passing.triangles)
+                        .bind("sample_transmittance", passing.samples),
+                    None => pass.bind("blocked", blocked),
+                };
             }
         };
         if settings.probes == 0 {
             trace(&mut plan, "trace", "traces every sample of the candidates");
         } else {
             trace(&mut plan, "probe", "traces the first samples of the candidates");
-            append_choice(&mut plan, items(settings.probes / 4 + 1), [light.sampling, receivers, blocked, decided]);
+            let why = "finds the receivers whose probes or neighbours disagree";
+            let kernel = if attenuated.is_some() { CHOOSE_ATTENUATED } else { CHOOSE };
+            let image = plan.parameter("probe image", size_of::<ProbeImage>() as u64);
+            let pass = plan.compute("choose", why, kernel, items(settings.probes / 4 + 1));
+            pass.bind("sampling", light.sampling).bind("probe_image", image).bind("receivers", receivers);
+            match &attenuated {
+                Some(passing) => pass.bind("sample_transmittance", passing.samples),
+                None => pass.bind("blocked", blocked),
+            };
+            pass.bind("decided", decided);
             trace(&mut plan, "trace", "traces the other samples where the probes disagree");
         }
         for (index, list) in candidates.into_iter().enumerate() {
@@ -218,19 +241,15 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
             plan.outputs.push(counts);
         }
     }
-    let masks = Masks { blocked, decided, areas: None };
+    let masks = Masks { blocked, decided, areas: None, transmittance: attenuated.map(|passing| passing.samples) };
     resolve::append(&mut plan, request, settings.samples, &light, receivers, masks);
     plan
 }
 
-fn append_choice(plan: &mut Plan, over: Over, [sampling, receivers, blocked, decided]: [ResourceId; 4]) {
-    let image = plan.parameter("probe image", size_of::<ProbeImage>() as u64);
-    plan.compute("choose", "finds the receivers whose probes or neighbours disagree", CHOOSE, over)
-        .bind("sampling", sampling)
-        .bind("probe_image", image)
-        .bind("receivers", receivers)
-        .bind("blocked", blocked)
-        .bind("decided", decided);
+/// What rays read and write instead of masks where triangles are semi-opaque.
+struct Attenuated {
+    triangles: ResourceId,
+    samples: ResourceId,
 }
 
 /// The values of the plan's parameters for one light and pass.

@@ -20,6 +20,7 @@ mod lights;
 mod pixels;
 mod same_samples;
 mod samples;
+mod semi_opaque;
 mod shapes;
 mod sphere_lights;
 mod sub_scenes;

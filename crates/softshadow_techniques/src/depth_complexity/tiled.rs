@@ -2,12 +2,12 @@
 
 use softshadow_plan::{Kernel, Over, Plan, ResourceId};
 
-use super::Reads;
 use super::values::{ClusterRange, FoldSettings, MOST_CORNERS};
+use super::{Attenuated, Reads};
 use crate::parts::occluder_buffers::OccluderContents;
 use crate::request::Request;
 
-/// Label of what the passes over the lists report: parts, chunks, edges, unfinished receivers, receivers by area.
+/// Label of what the passes over the lists report: parts, chunks, edges, unfinished receivers, receivers by area, overflowed receivers.
 pub const LIST_COUNTS: &str = "list counts";
 
 /// Receivers of a tile.
@@ -35,6 +35,10 @@ const BOUND_TILES: Kernel = Kernel { file: "depth_complexity/bound_tiles.wgsl", 
 const CULL: Kernel = Kernel { file: "depth_complexity/cull.wgsl", entry: "cull" };
 const SIZE_FOLD: Kernel = Kernel { file: "depth_complexity/size_fold.wgsl", entry: "size_fold" };
 const FOLD: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold" };
+const REFERENCE_DEPTH_ATTENUATED: Kernel =
+    Kernel { file: "depth_complexity/reference_depth.wgsl", entry: "reference_depth_attenuated" };
+const SPREAD_REFERENCE: Kernel = Kernel { file: "depth_complexity/spread_reference.wgsl", entry: "spread_reference" };
+const FOLD_ATTENUATED: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_attenuated" };
 
 /// Bytes of the lists that one receiver takes, on average.
 pub(super) fn list_bytes_per_receiver() -> u64 {
@@ -52,6 +56,7 @@ pub(super) fn append_fold(
     request: &Request<'_>,
     occluders: &OccluderContents,
     reads: &Reads,
+    attenuated: Option<&Attenuated>,
 ) -> ResourceId {
     let clusters_in = |n: u32| n.div_ceil(CLUSTER);
     let (cluster_count, tile_count) = (clusters_in(occluders.edge_count), tiles(request));
@@ -82,16 +87,28 @@ pub(super) fn append_fold(
         .bind("face_tree", face_tree)
         .bind("parts", parts);
     let why = "counts the layers over one point of the light";
-    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(request.block.count as u32, 4))
-        .bind("light_frame", reads.frame)
+    let kernel = if attenuated.is_some() { REFERENCE_DEPTH_ATTENUATED } else { REFERENCE_DEPTH };
+    let pass = plan.compute("count reference depth", why, kernel, items(request.block.count as u32, 4));
+    pass.bind("light_frame", reads.frame)
         .bind("receivers", reads.receivers)
         .bind("faces", faces)
         .bind("edges", edges)
         .bind("face_tree", face_tree)
         .bind("parts", parts)
-        .bind("slots", reads.slots)
-        .bind("blocked", reads.blocked)
-        .bind("counts", counts);
+        .bind("slots", reads.slots);
+    match attenuated {
+        None => pass.bind("blocked", reads.blocked),
+        Some(passing) => pass.bind("triangle_attenuation", passing.triangles),
+    };
+    pass.bind("counts", counts);
+    if let Some(passing) = attenuated {
+        let why = "spreads what passes to that point over all samples";
+        plan.compute("spread reference", why, SPREAD_REFERENCE, items(request.block.count as u32, 4))
+            .bind("light_frame", reads.frame)
+            .bind("attenuation_scale", passing.scale)
+            .bind("slots", reads.slots)
+            .bind("sample_transmittance", passing.samples);
+    }
     let why = "finds the edges that can be silhouettes over any part of the light";
     plan.compute("find silhouettes", why, SILHOUETTES, items(cluster_count, 16))
         .bind("light_frame", reads.frame)
@@ -120,21 +137,29 @@ pub(super) fn append_fold(
         .bind("counts", counts)
         .bind("dispatch_size", size);
     let settings = plan.parameter("fold settings", size_of::<FoldSettings>() as u64);
-    let outline = plan.parameter("light outline", MOST_CORNERS as u64 * 16);
-    let why = "adds up what changes at each edge, for 64 samples at a time, and the area beyond it";
-    plan.compute("fold edges", why, FOLD, Over::Indirect(size))
-        .bind("light_frame", reads.frame)
-        .bind("frame_samples", reads.samples)
-        .bind("fold_settings", settings)
-        .bind("outline", outline)
-        .bind("receivers", reads.receivers)
+    let (kernel, why) = match attenuated {
+        None => (FOLD, "adds up what changes at each edge, for 64 samples at a time, and the area beyond it"),
+        Some(_) => (FOLD_ATTENUATED, "adds up opaque layers and attenuation at each edge, for 64 samples at a time"),
+    };
+    let outline = attenuated.is_none().then(|| plan.parameter("light outline", MOST_CORNERS as u64 * 16));
+    let pass = plan.compute("fold edges", why, kernel, Over::Indirect(size));
+    pass.bind("light_frame", reads.frame).bind("frame_samples", reads.samples).bind("fold_settings", settings);
+    if let Some(outline) = outline {
+        pass.bind("outline", outline);
+    }
+    pass.bind("receivers", reads.receivers)
         .bind("edges", edges)
         .bind("incident_faces", incident_faces)
         .bind("slots", reads.slots)
-        .bind("lists", lists)
-        .bind("blocked", reads.blocked)
-        .bind("areas", areas)
-        .bind("counts", counts);
+        .bind("lists", lists);
+    match attenuated {
+        None => pass.bind("blocked", reads.blocked).bind("areas", areas),
+        Some(passing) => pass
+            .bind("attenuation_scale", passing.scale)
+            .bind("triangle_attenuation", passing.triangles)
+            .bind("sample_transmittance", passing.samples),
+    };
+    pass.bind("counts", counts);
     let report = plan.buffer(LIST_COUNTS, COUNT_BYTES);
     let why = "tells how many edges there were, what areas answered, and whether anything did not fit";
     plan.copy("report counts", why, [counts, report], COUNT_BYTES);

@@ -3,11 +3,14 @@
 use softshadow_plan::Values;
 use softshadow_scene::{Light, LightFrame, LightKind, LightSamples, Outline, pass_seed};
 
-use super::DepthComplexity;
+use softshadow_scene::occluders::UNITS_PER_HALVING;
+
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
+use super::{Attenuation, DepthComplexity};
 use crate::TechniqueError;
 use crate::parts::light_buffers::{self, SampleSet, Sampling};
+use crate::parts::opacity::UNITS_PER_WHOLE;
 use crate::parts::{receivers, shading};
 use crate::request::Request;
 
@@ -59,6 +62,23 @@ pub struct FoldSettings {
     wants_area: u32,
     sampling_bound: f32,
     tile_count: u32,
+}
+
+/// `AttenuationScale` of `attenuation.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct AttenuationScale {
+    halvings: f32,
+    shares: f32,
+}
+
+impl AttenuationScale {
+    fn of(attenuation: Attenuation) -> Self {
+        match attenuation {
+            Attenuation::Logarithmic => Self { halvings: (1.0 / UNITS_PER_HALVING) as f32, shares: 0.0 },
+            Attenuation::Sum => Self { halvings: 0.0, shares: (1.0 / UNITS_PER_WHOLE) as f32 },
+        }
+    }
 }
 
 /// The values of the plan's parameters for one light and pass.
@@ -113,6 +133,8 @@ pub(crate) fn values(
         tile_count,
     };
     values.insert("fold settings".into(), bytemuck::bytes_of(&fold).to_vec());
+    let scale = AttenuationScale::of(settings.attenuation);
+    values.insert("attenuation scale".into(), bytemuck::bytes_of(&scale).to_vec());
     values.insert("receiver order".into(), bytemuck::cast_slice(&order(request)).to_vec());
     shading::values(request, settings.passes, &mut values);
     Ok(values)

@@ -2,6 +2,7 @@
 
 pub mod light_buffers;
 pub mod occluder_buffers;
+pub mod opacity;
 pub(crate) mod pattern_name;
 pub mod receivers;
 pub mod resolve;

@@ -14,6 +14,10 @@ pub const BLOCKED: &str = "blocked samples";
 
 const RESOLVE: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve" };
 const RESOLVE_TEXTURED: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve_textured" };
+const RESOLVE_ATTENUATED: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve_attenuated" };
+const RESOLVE_ATTENUATED_TEXTURED: Kernel =
+    Kernel { file: "resolve/resolve.wgsl", entry: "resolve_attenuated_textured" };
+const MASK_SAMPLES: Kernel = Kernel { file: "resolve/mask_samples.wgsl", entry: "mask_samples" };
 const RESOLVE_AREAS: Kernel = Kernel { file: "resolve/resolve.wgsl", entry: "resolve_areas" };
 
 /// What a technique found out about its samples.
@@ -25,6 +29,8 @@ pub struct Masks {
     pub decided: ResourceId,
     /// Visible share of the light's area where that is known, else negative.
     pub areas: Option<ResourceId>,
+    /// What passes to each sample, where that may be a part of the light; else the masks say all.
+    pub transmittance: Option<ResourceId>,
 }
 
 /// Adds the passes from masks to results, and the picture where one is wanted.
@@ -44,12 +50,19 @@ pub fn append(
     let radiance = textured.then(|| light_buffers::append_radiance(plan, samples));
     // A texture's light is in its samples, not in its area.
     let areas = masks.areas.filter(|_| !textured);
-    let kernel = if textured { RESOLVE_TEXTURED } else { areas.map_or(RESOLVE, |_| RESOLVE_AREAS) };
+    let kernel = match (masks.transmittance, textured) {
+        (Some(_), false) => RESOLVE_ATTENUATED,
+        (Some(_), true) => RESOLVE_ATTENUATED_TEXTURED,
+        (None, true) => RESOLVE_TEXTURED,
+        (None, false) => areas.map_or(RESOLVE, |_| RESOLVE_AREAS),
+    };
     let pass = plan.compute("resolve", "turns masks into visibility and its standard error", kernel, over);
-    pass.bind("sampling", light.sampling)
-        .bind("blocked", masks.blocked)
-        .bind("visibility", visibility)
-        .bind("standard_error", standard_error);
+    pass.bind("sampling", light.sampling);
+    match masks.transmittance {
+        Some(transmittance) => pass.bind("sample_transmittance", transmittance),
+        None => pass.bind("blocked", masks.blocked),
+    };
+    pass.bind("visibility", visibility).bind("standard_error", standard_error);
     match areas {
         Some(areas) => pass.bind("areas", areas),
         None => pass.bind("decided", masks.decided),
@@ -60,7 +73,11 @@ pub fn append(
     match request.wants.picture {
         None => {}
         Some(shading::Shading::Integrated) => {
-            let seen = Seen::Masks { blocked: masks.blocked, decided: masks.decided };
+            let decided = masks.decided;
+            let seen = match masks.transmittance {
+                Some(transmittance) => Seen::Transmittance { transmittance, decided },
+                None => Seen::Masks { blocked: masks.blocked, decided },
+            };
             shading::append(plan, request, receivers, light, seen, samples);
         }
         // The visibility is known after the last pass only.
@@ -68,6 +85,12 @@ pub fn append(
         Some(shading::Shading::Modulated) => {
             shading::append(plan, request, receivers, light, Seen::Values(visibility), samples);
         }
+    }
+    if let Some(transmittance) = masks.transmittance.filter(|_| request.closes_light && request.wants.sample_masks) {
+        plan.compute("mask samples", "marks the samples to which nothing passes", MASK_SAMPLES, over)
+            .bind("sampling", light.sampling)
+            .bind("sample_transmittance", transmittance)
+            .bind("blocked", masks.blocked);
     }
     if request.closes_light {
         plan.outputs.push(visibility);

@@ -7,4 +7,5 @@ mod lean;
 mod limits;
 mod program;
 mod requests;
+mod semi_opaque;
 mod snapshots;
