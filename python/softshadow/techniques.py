@@ -78,6 +78,8 @@ class RayTraced(Technique):
 class HardShadowMap(Technique):
     """One depth map from the light's centre (Williams 1978): fast, and without penumbra.
 
+    Semi-opaque triangles are taken for opaque; ``info["notes"]`` says so.
+
     Parameters
     ----------
     resolution : int
@@ -112,7 +114,11 @@ class DepthComplexity(Technique):
     passes : int
         Sets of samples that are averaged, each with a seed of its own.
     exact_area : bool
-        Whether the light's visible area answers where the samples show a single layer.
+        Whether the light's visible area answers where the samples show a single layer; never in scenes in which
+        something semi-opaque hides the light.
+    attenuation : {"logarithmic", "sum"}
+        How several semi-opaque layers add up: ``"logarithmic"`` is right for any number of them, the product of what
+        passes each. ``"sum"`` adds opacities, as the paper does: right for one layer, too dark for more.
 
     Raises
     ------
@@ -126,6 +132,7 @@ class DepthComplexity(Technique):
     seed: int = _DEPTH_COMPLEXITY["seed"]
     passes: int = _DEPTH_COMPLEXITY["passes"]
     exact_area: bool = _DEPTH_COMPLEXITY["exact_area"]
+    attenuation: str = _DEPTH_COMPLEXITY["attenuation"]
 
 
 TECHNIQUES: dict[str, type[Technique]] = {kind.name: kind for kind in (RayTraced, HardShadowMap, DepthComplexity)}
