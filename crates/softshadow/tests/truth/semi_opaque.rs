@@ -370,7 +370,8 @@ fn pictures_are_lit_through_glass() {
     let all = [floor.clone(), plate([-8.0, 8.0], [-8.0, 8.0], 2.0)].concat();
     let camera = Camera::look_at([0.0, -1.5, 1.0], [0.0; 3], Some([0.0, 0.0, 1.0]), 45.0, [32, 24]).unwrap();
     let light = lamp(rectangle(1.0, 1.0), [0.0, 0.0, 3.0]);
-    for technique in [ray_traced(64), edges(64)] {
+    let probed = Technique::RayTraced(softshadow::RayTraced { probes: 16, ..rays(64) });
+    for technique in [ray_traced(64), probed, edges(64)] {
         for shading in [Shading::Integrated, Shading::Modulated] {
             let options = PictureOptions { shading, ..PictureOptions::default() };
             let picture = |scene: &Scene| {
