@@ -102,7 +102,8 @@ impl LocalScene {
                 rows.push(Row { corners, caller_id: id, mesh_id: mesh_id as u32, opacity });
             }
         }
-        rows.sort_by(|a, b| triangle_order(&a.corners, &b.corners));
+        // Triangles in one place stand in the order of their opacities: what passes them is multiplied in this order.
+        rows.sort_by(|a, b| triangle_order(&a.corners, &b.corners).then(a.opacity.total_cmp(&b.opacity)));
         let extent = rows.iter().flat_map(|r| r.corners.as_flattened()).fold(0f32, |m, x| m.max(x.abs()));
         let mut built = Self {
             frame,
@@ -290,6 +291,14 @@ mod tests {
         for (triangle, id) in graded.caller_ids.iter().enumerate() {
             assert_eq!(graded.opacity(triangle), *id as f32 / 200.0);
         }
+        // In whichever order triangles in one place are given.
+        let doubled = |opacities: Vec<f32>| {
+            let (vertices, triangle) = (grid(1, 1.0, [0.0; 3]).0, [[0, 1, 2]]);
+            let mesh = Mesh::new("pane", vertices, triangle.repeat(opacities.len()), Material::default()).unwrap();
+            let scene = Scene::new(vec![mesh.with_opacities(opacities).unwrap()]).unwrap();
+            LocalScene::new(&scene, None, ROOMY).opacities
+        };
+        assert_eq!(doubled(vec![0.3, 0.9, 0.1, 1.0, 0.7]), doubled(vec![1.0, 0.1, 0.7, 0.3, 0.9]));
         let holes = of(&|index| if index % 3 == 0 { 0.0 } else { 1.0 });
         assert!(holes.opacities.is_empty() && holes.triangle_count() == 108);
     }

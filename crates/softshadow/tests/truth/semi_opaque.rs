@@ -2,8 +2,9 @@
 
 use softshadow::measure::{OcclusionTracer, Receiver, Target};
 use softshadow::{
-    Attenuation, Camera, DepthComplexity, Light, LightShape, LightTexture, Material, Mesh, Options, PictureOptions,
-    Receivers, SamplePattern, Scene, Shading, Technique, Visibility, light_points, look_at, render, visibility,
+    Attenuation, Camera, DepthComplexity, Error, Light, LightShape, LightTexture, Material, Mesh, Options,
+    PictureOptions, Receivers, SamplePattern, Scene, Shading, Technique, Visibility, light_points, look_at, render,
+    visibility,
 };
 use softshadow_scene::LocalScene;
 
@@ -364,6 +365,25 @@ fn textures_passes_and_probes_go_through_glass() {
 }
 
 #[test]
+fn blocks_and_the_order_of_triangles_change_no_bit() {
+    let (_, soup) = &soups()[1];
+    let floor = points(Random(59).points(3000, [-1.2, 1.2], [-1.2, 1.2], [-1.0, -0.5]));
+    let light = &lights()[..1];
+    let turned: Vec<Triangle> = soup.iter().rev().map(|[a, b, c]| [*c, *a, *b]).collect();
+    for technique in [ray_traced(64), edges(64)] {
+        let run = |shade: &Scene, memory_limit_bytes| {
+            let options = Options { memory_limit_bytes, sample_masks: true, ..Options::default() };
+            visibility(context(), shade, light, &floor, &technique, &options, &mut |_, _| true).unwrap()
+        };
+        let (whole, cut) = (run(&with(soup, mixed), 1 << 30), run(&with(soup, mixed), 1 << 18));
+        assert!(cut.info.blocks > 4 && whole.info.blocks == 1, "{}", cut.info.blocks);
+        assert_eq!(bits(&whole), bits(&cut), "{}", technique.name());
+        let reversed = run(&with(&turned, |triangle| mixed(soup.len() - 1 - triangle)), 1 << 30);
+        assert_eq!(bits(&whole), bits(&reversed), "{}", technique.name());
+    }
+}
+
+#[test]
 fn pictures_are_lit_through_glass() {
     // A camera under a sheet that all light passes: every colour is that share of what it is without.
     let floor = plate([-1.0, 1.0], [-1.0, 1.0], 0.0);
@@ -391,22 +411,28 @@ fn pictures_are_lit_through_glass() {
 
 #[test]
 fn more_attenuation_than_sums_hold_is_told() {
-    // 2^27 units at 24 halvings a sheet are 1,365 sheets; and a small plate, so that something is folded.
-    let stack = |sheets: usize| {
+    // 2^27 units at 24 halvings a sheet are 1,365 sheets; with a small plate, so that something is folded, and without.
+    let stack = |sheets: usize, folds: bool| {
         let mut all: Vec<Triangle> =
             (0..sheets).flat_map(|i| plate([-9.0, 9.0], [-9.0, 9.0], 0.5 + 1e-4 * i as f64)).collect();
-        all.extend(plate([-0.02, 0.02], [-0.03, 0.03], 0.4));
+        all.extend(plate([-0.02, 0.02], [-0.03, 0.03], 0.4).into_iter().filter(|_| folds));
         with(&all, |_| 0.999_999_94)
     };
     let light = [lamp(rectangle(0.5, 0.5), [0.0, 0.0, 3.0])];
     let under = points(Random(56).points(64, [-0.1, 0.1], [-0.1, 0.1], [0.0, 0.0]));
-    let run = |sheets| {
-        visibility(context(), &stack(sheets), &light, &under, &edges(64), &Options::default(), &mut |_, _| true)
-    };
-    let fits = run(1200).unwrap();
-    assert!(fits.info.silhouette_edges > 0 && fits.values.iter().all(|v| *v == 0.0), "{:?}", fits.values);
-    let error = run(1500).unwrap_err().to_string();
-    assert!(error.contains("semi-opaque layers") && error.contains("use ray_traced"), "{error}");
+    for folds in [true, false] {
+        let run = |sheets| {
+            let shade = stack(sheets, folds);
+            visibility(context(), &shade, &light, &under, &edges(64), &Options::default(), &mut |_, _| true)
+        };
+        let fits = run(1200).unwrap();
+        assert_eq!(fits.values, [0.0; 64]);
+        assert!(!folds || fits.info.silhouette_edges > 0);
+        let error = run(1500).unwrap_err();
+        let words = error.to_string();
+        assert!(matches!(error, Error::Gpu(_)), "{words}");
+        assert!(words.contains("semi-opaque layers") && words.contains("use ray_traced"), "{words}");
+    }
 }
 
 #[test]
