@@ -21,6 +21,7 @@ mod pixels;
 mod same_samples;
 mod samples;
 mod semi_opaque;
+mod semi_opaque_samples;
 mod shapes;
 mod sphere_lights;
 mod sub_scenes;

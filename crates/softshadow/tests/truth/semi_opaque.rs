@@ -1,30 +1,25 @@
-//! Semi-opaque occluders: products of what passes each triangle, in closed form, against float64 crossings, and rays against edges.
+//! Semi-opaque occluders: products of what passes each triangle, in closed form, and what results make of them.
 
-use softshadow::measure::{OcclusionTracer, Receiver, Target};
 use softshadow::{
     Attenuation, Camera, DepthComplexity, Error, Light, LightShape, LightTexture, Material, Mesh, Options,
-    PictureOptions, Receivers, SamplePattern, Scene, Shading, Technique, Visibility, light_points, look_at, render,
-    visibility,
+    PictureOptions, Scene, Shading, Technique, look_at, render, visibility,
 };
-use softshadow_scene::LocalScene;
 
-use crate::common::{
-    Random, bits, context, hard_shadow_map, lamp, points, ray_traced, rays, rectangle, see, surface_points,
-};
+use crate::common::{Random, bits, context, hard_shadow_map, lamp, points, ray_traced, rays, rectangle, see};
 use crate::shapes::{Point, Triangle, cuboid, plate, scene, sphere, torus};
 
 /// What a unit of attenuation, rounded, can cost of what passes one layer; and what float32 does besides.
-const BY_LAYER: f64 = 8.5e-5;
-const FLOAT32: f64 = 1e-6;
+pub(crate) const BY_LAYER: f64 = 8.5e-5;
+pub(crate) const FLOAT32: f64 = 1e-6;
 
 /// The same triangles with an opacity each.
-fn with(triangles: &[Triangle], opacity: impl Fn(usize) -> f32) -> Scene {
+pub(crate) fn with(triangles: &[Triangle], opacity: impl Fn(usize) -> f32) -> Scene {
     let mesh = scene(triangles).meshes()[0].clone();
     let opacities = (0..triangles.len()).map(opacity).collect();
     Scene::new(vec![mesh.with_opacities(opacities).unwrap()]).unwrap()
 }
 
-fn edges(samples: u32) -> Technique {
+pub(crate) fn edges(samples: u32) -> Technique {
     Technique::DepthComplexity(DepthComplexity { samples, ..DepthComplexity::default() })
 }
 
@@ -33,8 +28,16 @@ fn summed(samples: u32) -> Technique {
     Technique::DepthComplexity(DepthComplexity { samples, attenuation, ..DepthComplexity::default() })
 }
 
+/// One sample a receiver, so that every sample's own share is told.
+pub(crate) fn sampled(technique: &str, seed: u32) -> Technique {
+    match technique {
+        "ray_traced" => Technique::RayTraced(softshadow::RayTraced { seed, ..rays(1) }),
+        _ => Technique::DepthComplexity(DepthComplexity { samples: 1, seed, ..DepthComplexity::default() }),
+    }
+}
+
 /// Every kind of light, looking down on the origin.
-fn lights() -> Vec<Light> {
+pub(crate) fn lights() -> Vec<Light> {
     let pose = look_at([0.5, 0.4, 3.0], [0.0; 3], None).unwrap();
     let bracket = [[-0.5, -0.5], [0.6, -0.5], [0.6, -0.15], [-0.1, -0.15], [-0.1, 0.45], [-0.5, 0.45]];
     [
@@ -49,7 +52,7 @@ fn lights() -> Vec<Light> {
 }
 
 /// Opaque and semi-opaque triangles in turn.
-fn mixed(triangle: usize) -> f32 {
+pub(crate) fn mixed(triangle: usize) -> f32 {
     [0.5, 1.0, 0.25, 0.9, 0.0, 0.5, 0.75][triangle % 7]
 }
 
@@ -67,7 +70,7 @@ fn leaves(random: &mut Random, count: usize, size: f64) -> Vec<Triangle> {
 }
 
 /// A ring and a ball, wound and shared as bodies are; and leaves.
-fn soups() -> [(&'static str, Vec<Triangle>); 2] {
+pub(crate) fn soups() -> [(&'static str, Vec<Triangle>); 2] {
     let bodies = [torus(0.5, 0.2, 24, 12), sphere([0.1, 0.0, 0.6], 0.25, 2)].concat();
     [("bodies", bodies), ("leaves", leaves(&mut Random(41), 120, 0.2))]
 }
@@ -127,146 +130,6 @@ fn a_sheet_that_hides_a_part_takes_its_share_of_that_part() {
             }
             assert!(opaque.values.iter().filter(|v| **v > 0.1 && **v < 0.9).count() > 100);
         }
-    }
-}
-
-/// How many samples were compared, how many of them are wrong, and how many see something but not all.
-#[derive(Debug, Default, Clone, Copy)]
-struct Found {
-    samples: usize,
-    wrong: usize,
-    partly: usize,
-}
-
-/// What passes one sample a receiver, by float64 crossings of the float32 triangles.
-struct Truth {
-    local: LocalScene,
-    tracer: OcclusionTracer,
-}
-
-impl Truth {
-    fn of(scene: &Scene) -> Self {
-        let local = LocalScene::new(scene, None, 128 << 20);
-        let exact: Vec<Triangle> = local.triangles().map(|t| t.map(|p| p.map(f64::from))).collect();
-        let tracer = OcclusionTracer::new(&exact).unwrap();
-        Self { local, tracer }
-    }
-
-    /// What passes, and through how many layers.
-    fn passed(&self, origin: Point, target: &Target) -> (f64, f64) {
-        let crossed = self.tracer.crossings(&Receiver::at(origin), target);
-        let share = crossed.iter().map(|t| 1.0 - f64::from(self.local.opacity(*t))).product();
-        (share, crossed.len() as f64)
-    }
-
-    /// Compares every receiver's only sample.
-    fn compare(&self, scene: &Scene, light: &Light, seed: u32, seen: &Visibility) -> Found {
-        let placed = &seen.placed.as_ref().unwrap().positions;
-        let at = light_points(scene, light, SamplePattern::Stratified, 1, seed, placed).unwrap();
-        let local = |p: Point| self.local.frame.local_from_world(p).to_array();
-        let float32 = |p: Point| self.local.frame.local_from_world(p).as_vec3().to_array().map(f64::from);
-        let mut found = Found::default();
-        for (index, (position, value)) in placed.iter().zip(&seen.values).enumerate() {
-            let target = match (at.at_infinity, at.rows) {
-                (true, _) => Target::Direction(at.positions[0]),
-                (false, 1) => Target::Point(float32(at.positions[0])),
-                _ => Target::Point(local(at.positions[index])),
-            };
-            let (share, layers) = self.passed(float32(*position), &target);
-            let off = (f64::from(*value) - share).abs();
-            found.samples += 1;
-            found.wrong += usize::from(off > share * (layers * BY_LAYER + FLOAT32) + FLOAT32);
-            found.partly += usize::from(share > 0.0 && share < 1.0);
-        }
-        found
-    }
-}
-
-/// One sample a receiver, so that every sample's own share is told.
-fn sampled(technique: &str, seed: u32) -> Technique {
-    match technique {
-        "ray_traced" => Technique::RayTraced(softshadow::RayTraced { seed, ..rays(1) }),
-        _ => Technique::DepthComplexity(DepthComplexity { samples: 1, seed, ..DepthComplexity::default() }),
-    }
-}
-
-#[test]
-fn shares_of_mixed_soups_are_those_of_float64_crossings() {
-    for (name, soup) in soups() {
-        let shade = with(&soup, mixed);
-        let truth = Truth::of(&shade);
-        let floor = points(Random(52).points(1500, [-1.5, 1.5], [-1.5, 1.5], [-1.0, -0.6]));
-        for technique in ["ray_traced", "depth_complexity"] {
-            let mut total = Found::default();
-            for light in lights() {
-                for seed in 0..6 {
-                    let seen = see(&shade, std::slice::from_ref(&light), &floor, &sampled(technique, seed));
-                    let found = truth.compare(&shade, &light, seed, &seen);
-                    total.samples += found.samples;
-                    total.wrong += found.wrong;
-                    total.partly += found.partly;
-                }
-            }
-            println!("{name}, {technique} against float64: {total:?}");
-            assert!(total.partly * 20 > total.samples, "{total:?}");
-            assert!(total.wrong * 10_000 <= total.samples, "{name}, {technique}: {total:?}");
-        }
-    }
-}
-
-#[test]
-fn the_comparison_sees_one_opacity_changed_and_one_triangle_gone() {
-    let (_, soup) = &soups()[1];
-    let floor = points(Random(52).points(1500, [-1.5, 1.5], [-1.5, 1.5], [-1.0, -0.6]));
-    let light = &lights()[0];
-    let shade = with(soup, mixed);
-    let seen = see(&shade, std::slice::from_ref(light), &floor, &sampled("ray_traced", 1));
-    assert_eq!(Truth::of(&shade).compare(&shade, light, 1, &seen).wrong, 0);
-    let wrong = |spoilt: &dyn Fn(usize) -> f32| Truth::of(&with(soup, spoilt)).compare(&shade, light, 1, &seen).wrong;
-    assert!(wrong(&|t| if t % 7 == 0 { 0.501 } else { mixed(t) }) > 10);
-    assert!(wrong(&|t| if t % 7 == 2 { 0.0 } else { mixed(t) }) > 10);
-}
-
-/// Receivers whose 64 samples do not all pass the same in both, by more than rounding; and how many samples there are.
-fn against_rays(shade: &Scene, light: &Light, receivers: &Receivers, samples: u32) -> (usize, usize) {
-    let light = std::slice::from_ref(light);
-    let (a, b) = (see(shade, light, receivers, &ray_traced(samples)), see(shade, light, receivers, &edges(samples)));
-    // A layer more or less of the thinnest opacity, 0.25, before all that else hides a sample; most samples see much more than that.
-    let rounding = |a: f32| 10.0 * BY_LAYER * f64::from(a) + FLOAT32;
-    let differs = |(a, b): (&f32, &f32)| f64::from((a - b).abs()) > rounding(*a);
-    assert!(a.values.iter().filter(|v| **v > 0.01 && **v < 0.99).count() > a.values.len() / 10);
-    (a.values.iter().zip(&b.values).filter(|pair| differs(*pair)).count(), a.values.len() * samples as usize)
-}
-
-#[test]
-fn edges_pass_what_rays_pass() {
-    let floor = Random(53).points(1500, [-1.2, 1.2], [-1.2, 1.2], [-1.0, -0.5]);
-    let (free, surface) = (points(floor.clone()), surface_points(floor, [0.0, 0.3, 0.9]));
-    let (mut differing, mut all) = (0, 0);
-    for (_, soup) in soups() {
-        let shade = with(&soup, mixed);
-        for light in lights() {
-            for samples in [16, 64, 130, 256] {
-                for receivers in [&free, &surface] {
-                    let (found, samples) = against_rays(&shade, &light, receivers, samples);
-                    differing += found;
-                    all += samples;
-                }
-            }
-        }
-    }
-    println!("edges against rays: {differing} receivers with a sample that differs, of {all} samples");
-    assert!(differing * 10_000 <= all, "{differing} of {all}");
-}
-
-#[test]
-fn receivers_on_semi_opaque_bodies_leave_their_own_triangle_out() {
-    let camera = Camera::look_at([1.6, -1.9, 1.4], [0.0, 0.0, 0.2], Some([0.0, 0.0, 1.0]), 40.0, [96, 72]).unwrap();
-    for (name, soup) in soups() {
-        let soup = [soup, plate([-2.0, 2.0], [-2.0, 2.0], -0.9)].concat();
-        let (differing, samples) = against_rays(&with(&soup, mixed), &lights()[0], &Receivers::Camera(camera), 64);
-        println!("{name} seen by a camera: {differing} pixels differ, {samples} samples");
-        assert!(differing * 10_000 <= samples, "{name}: {differing} of {samples}");
     }
 }
 
