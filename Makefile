@@ -7,12 +7,13 @@ BIN := $(VENV)/bin
 # Mesa's device-selection layer complains on stderr where there is no desktop session; the library chooses the device itself.
 export VK_LOADER_LAYERS_DISABLE := VK_LAYER_MESA_device_select
 
-.PHONY: help setup driver venv extension demo test test-rust test-python lint evidence clean
+.PHONY: help setup driver venv extension demo test test-rust test-python lint bench evidence clean
 
 help:
 	@echo "make demo      render the demonstration scene; says where the picture and the numbers are"
 	@echo "make test      all tests, Rust and Python"
 	@echo "make lint      formatting, clippy, ruff, mypy, stubs"
+	@echo "make bench     time, bytes and error of the techniques, and the papers' ratios, in a few minutes"
 	@echo "make evidence  heavy checks against other renderers, with meshes; writes EVIDENCE.md"
 
 setup: extension driver
@@ -58,11 +59,16 @@ lint: extension
 	$(BIN)/mypy --strict python/softshadow
 	$(BIN)/python -m mypy.stubtest softshadow._core
 
+# More scenes, sizes and settings: target/release/softshadow-bench --help
+bench:
+	cargo build --release --package softshadow_bench --quiet
+	target/release/softshadow-bench --ratios
+
 # Other renderers are large; they are wanted only here.
 evidence: setup
 	@if ! ldconfig -p | grep -q libusb-1.0; then \
 	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); $$sudo apt-get install -y -qq libusb-1.0-0 libgomp1 libx11-6; fi
-	$(BIN)/python -m pip install --quiet open3d mitsuba
+	$(BIN)/python -m pip install --quiet open3d mitsuba embreex
 	$(BIN)/python tests/evidence/run.py --output EVIDENCE.md
 
 clean:

@@ -4,7 +4,7 @@
 //#import depth_complexity/tree.wgsl
 
 @group(0) @binding(0) var<uniform> slice: Slice;
-@group(0) @binding(1) var<storage, read> face_tree: array<TreeNode>;
+@group(0) @binding(1) var<storage, read> face_tree: array<EightWords>;
 @group(0) @binding(2) var<storage, read_write> parts: array<TilePart>;
 
 @compute @workgroup_size(64)
@@ -22,7 +22,7 @@ fn find_faces(@builtin(global_invocation_id) invocation: vec3<u32>) {
     var steps = 0u;
     while (node < arrayLength(&face_tree) && !found && steps < LONGEST_WALK) {
         steps++;
-        let box = face_tree[node];
+        let box = node_of(face_tree[node]);
         let met = shaft_meets_box(planes, box.low, box.high);
         found = met && box.leaf != 0u;
         node = select(box.skip, node + 1u, met);

@@ -3,6 +3,7 @@
 //#import shared/receiver.wgsl
 //#import depth_complexity/edge.wgsl
 //#import depth_complexity/horizon.wgsl
+//#import depth_complexity/coverage.wgsl
 //#import depth_complexity/counters.wgsl
 //#import depth_complexity/attenuation.wgsl
 //#import depth_complexity/area.wgsl
@@ -10,20 +11,24 @@
 //#import depth_complexity/walk.wgsl
 
 @group(0) @binding(0) var<uniform> light_frame: LightFrame;
-@group(0) @binding(1) var<uniform> frame_samples: FrameSamples;
+@group(0) @binding(1) var<uniform> group_samples: GroupSamples;
 @group(0) @binding(2) var<uniform> fold_settings: FoldSettings;
 @group(0) @binding(3) var<uniform> outline: Outline;
 @group(0) @binding(4) var<storage, read> receivers: array<Receiver>;
-@group(0) @binding(5) var<storage, read> edges: array<OccluderEdge>;
-@group(0) @binding(6) var<storage, read> incident_faces: array<IncidentFace>;
+@group(0) @binding(5) var<storage, read> edges: array<EightWords>;
+@group(0) @binding(6) var<storage, read> incident_faces: array<EightWords>;
 @group(0) @binding(7) var<storage, read> slots: array<Slot>;
 @group(0) @binding(8) var<storage, read_write> blocked: array<u32>;
 @group(0) @binding(9) var<storage, read> lists: array<u32>;
 @group(0) @binding(11) var<storage, read_write> counts: ListCounts;
-@group(0) @binding(10) var<storage, read_write> areas: array<f32>;
+@group(0) @binding(10) var<storage, read_write> areas: array<u32>;
 @group(0) @binding(12) var<uniform> attenuation_scale: AttenuationScale;
 @group(0) @binding(13) var<storage, read> triangle_attenuation: array<u32>;
 @group(0) @binding(14) var<storage, read_write> sample_transmittance: array<f32>;
+
+struct GroupSamples {
+    at: array<vec4<f32>, 64>,
+}
 
 struct Outline {
     corners: array<vec4<f32>, 64>,
@@ -31,16 +36,16 @@ struct Outline {
 
 struct FoldSettings {
     slot_count: u32,
-    wants_area: u32,
+    group: u32,             // which 64 of a receiver's samples
     sampling_bound: f32,    // an area farther from the samples' share is not believed
     tile_count: u32,
 }
 
-// A list that is longer than this many steps is given up, and counted.
-const MOST_STEPS: u32 = 60000u;
-
 // Layers of which areas are believed: far below where counters or sums of areas wrap.
 const MOST_AREA_LAYERS: u32 = 127u;
+
+// Marks an area that answers; the other bits are its float.
+const AREA_ANSWERS: u32 = 0x80000000u;
 
 // Areas are summed in this fixed point, so that the order of edges changes no bit.
 const AREA_UNITS: f32 = 4194304.0;
@@ -48,7 +53,6 @@ const AREA_UNITS: f32 = 4194304.0;
 // What the edges of one receiver add up to.
 struct Sums {
     counters: Counters,
-    area: i32,
     changes: u32,           // by how much D can have changed at most
     smallest: u32,          // change of any edge
 }
@@ -57,55 +61,24 @@ struct Sums {
 fn weight(view: FrameView, edge: OccluderEdge, triangle: u32) -> i32 {
     var sum = 0;
     for (var k = 0u; k < edge.incidence_count; k++) {
-        let face = incident_faces[edge.first_incidence + k];
+        let face = incident_face_of(incident_faces[edge.first_incidence + k]);
         let left = turned(side_of_plane(face.normal, face.point, face.flatness, view.position), face);
         sum += select(left, 0, (face.reference >> 1u) == triangle);
     }
     return sum;
 }
 
-fn area_beyond(image: EdgeImage) -> f32 {
-    let low = low_direction(image);
-    let high = high_direction(image);
-    let line = select(-image.line, image.line, line_left(image, low, high));
-    let from_direction = select(high, low, image.left);
-    let to_direction = select(low, high, image.left);
-    if (light_frame.outline_count == 0u) {
-        return area_beyond_arc(line, from_direction, to_direction, -light_frame.reference);
-    }
-    var sum = 0.0;
-    var before = outline.corners[light_frame.outline_count - 1u].xy;
-    for (var k = 0u; k < light_frame.outline_count; k++) {
-        let corner = outline.corners[k].xy;
-        sum += area_beyond_side(line, from_direction, to_direction, before, corner);
-        before = corner;
-    }
-    return sum;
-}
-
-fn folded(before: Sums, image: EdgeImage, change: i32, mask: vec2<u32>, wants_area: bool) -> Sums {
-    var sums = before;
-    sums.counters = counters_change(sums.counters, mask, change);
-    sums.changes += most_change(change);
-    sums.smallest = min(sums.smallest, u32(abs(change)));
-    if (wants_area) {
-        let beyond = area_beyond(image);
-        sums.area += i32(round(beyond * AREA_UNITS)) * change;
-    }
-    return sums;
-}
-
 fn begin_fold(depth: i32) -> Sums {
-    return Sums(counters_at(depth), 0, u32(abs(depth)), 0xffffu);
+    return Sums(counters_at(depth), u32(abs(depth)), 0xffffu);
 }
 
 // The visible share of the area; negative where samples have to answer.
-fn visible_area(sums: Sums, depth: i32, hidden_samples: vec2<u32>, sampled: f32) -> f32 {
+fn visible_area(sums: Sums, area: i32, depth: i32, hidden_samples: vec2<u32>, sampled: f32) -> f32 {
     let nothing_hidden = (hidden_samples.x | hidden_samples.y) == 0u;
     let single = counters_single_value(sums.counters, hidden_samples);
     let layers = select(single, sums.smallest, nothing_hidden);
     let agrees = layers > 0u && layers <= MOST_AREA_LAYERS && (depth == 0 || depth == i32(layers));
-    let total = f32(depth) * light_frame.area + f32(sums.area) / AREA_UNITS;
+    let total = f32(depth) * light_frame.area + f32(area) / AREA_UNITS;
     let visible = 1.0 - total / (f32(max(layers, 1u)) * light_frame.area);
     let believed = agrees && abs(visible - sampled) <= fold_settings.sampling_bound;
     return select(-1.0, clamp(visible, 0.0, 1.0), believed);
@@ -121,21 +94,9 @@ fn existing(samples: u32) -> vec2<u32> {
     );
 }
 
-// Samples of the group below the receiver's horizon.
-fn below_horizon(view: FrameView, slope: vec3<f32>, first: u32, count: u32) -> vec2<u32> {
-    var mask = vec2<u32>(0u);
-    for (var k = 0u; k < count; k++) {
-        let s = placed_sample(light_frame, view, frame_samples.at[first + k].xy);
-        let below = select(0u, 1u << (k & 31u), slope.z + slope.x * s.x + slope.y * s.y <= 0.0);
-        mask |= select(vec2<u32>(below, 0u), vec2<u32>(0u, below), k >= 32u);
-    }
-    return mask;
-}
-
-// A slot whose receiver an invocation folds for 64 of its samples.
+// What one invocation folds: a receiver and the list of its bundle.
 struct Task {
     slot: u32,
-    group: u32,
     chunk: u32,
     exists: bool,
 }
@@ -143,72 +104,126 @@ struct Task {
 fn task_of(group: vec3<u32>, groups: vec3<u32>, lane: u32) -> Task {
     let position = group.y * groups.x + group.x;
     let count = atomicLoad(&counts.parts);
-    let item = 2u * min(position, max(count, 1u) - 1u);
+    let item = HEAD * min(position, max(count, 1u) - 1u);
     let part = lists[item];
     let at = (part >> 1u) * TILE + lane;
     let slot = slots[min(at, fold_settings.slot_count - 1u)];
     let mine = slot.part == (part & 1u) && slot.depth != NO_VIEW;
-    return Task(at, group.z, lists[item + 1u], position < count && at < fold_settings.slot_count && mine);
+    return Task(at, lists[item + 2u + lane / BUNDLE], position < count && at < fold_settings.slot_count && mine);
 }
 
-fn finish(sums: Sums, view: FrameView, receiver: Receiver, task: Task, wants_area: bool) {
+// One receiver in the course of its fold.
+struct Fold {
+    slot: Slot,
+    receiver: Receiver,
+    view: FrameView,
+    slope: vec3<f32>,
+    is_above: bool,
+    count: u32,              // samples of this group
+    sums: Sums,
+    chunk: u32,
+    steps: u32,
+}
+
+fn begin(task: Task) -> Fold {
     let slot = slots[task.slot];
-    let first = task.group * 64u;
-    let count = min(64u, light_frame.sample_count - first);
-    let all = existing(count);
-    let words = (light_frame.sample_count + 31u) / 32u;
-    let layered = counters_nonzero(sums.counters) & all;
+    let receiver = receivers[slot.receiver];
+    let view = frame_view(light_frame, receiver.position);
     let slope = horizon_slope(view, receiver);
-    let crossing = select(count, 0u, is_above_horizon(light_frame, receiver, slope));
-    let mask = layered | (below_horizon(view, slope, first, crossing) & all);
-    blocked[slot.receiver * words + 2u * task.group] = mask.x;
-    if (count > 32u) {
-        blocked[slot.receiver * words + 2u * task.group + 1u] = mask.y;
+    let is_above = is_above_horizon(light_frame, receiver, slope);
+    let count = min(64u, light_frame.sample_count - 64u * fold_settings.group);
+    return Fold(slot, receiver, view, slope, is_above, count, begin_fold(slot.depth), task.chunk, 0u);
+}
+
+fn image_before(view: FrameView, edge: OccluderEdge) -> EdgeImage {
+    return before_limit(view, edge, edge_image(view, edge));
+}
+
+fn chunk_at(chunk: u32) -> u32 {
+    return first_chunk_word(fold_settings.tile_count) + chunk * CHUNK;
+}
+
+// The edges of a chunk that change anything for a receiver, one bit each, and by how much: binary digits, and a sign.
+struct Changes {
+    edges: u32,
+    ones: u32,
+    twos: u32,
+    fours: u32,
+    minus: u32,
+    many: u32,              // more than any counter holds
+}
+
+fn with_change(before: Changes, bit: u32, weight: i32) -> Changes {
+    var changes = before;
+    let size = u32(abs(weight));
+    changes.edges |= select(0u, bit, weight != 0);
+    changes.ones |= select(0u, bit, (size & 1u) != 0u);
+    changes.twos |= select(0u, bit, (size & 2u) != 0u);
+    changes.fours |= select(0u, bit, (size & 4u) != 0u);
+    changes.minus |= select(0u, bit, weight < 0);
+    changes.many |= select(0u, bit, size > 7u);
+    return changes;
+}
+
+// Drivers on the CPU run both sides of a branch, and skip loops only: so a loop over all edges, and one over those of unknown weight.
+fn changes_in(view: FrameView, triangle: u32, at: u32) -> Changes {
+    let end = lists[at + 1u];
+    var changes = Changes(0u, 0u, 0u, 0u, 0u, 0u);
+    var unknown = 0u;
+    for (var k = 0u; k < end; k++) {
+        let entry = lists[at + 2u + k];
+        let image = image_before(view, edge_of(edges[listed_edge(entry)]));
+        let bit = select(0u, 1u << k, image_matters(light_frame, image));
+        let weight = listed_weight(entry);
+        changes = with_change(changes, bit, weight);
+        unknown |= select(0u, bit, weight == 0);
     }
-    if (wants_area) {
-        let sampled = 1.0 - f32(countOneBits(mask.x) + countOneBits(mask.y)) / f32(count);
-        let visible = visible_area(sums, slot.depth, layered, sampled);
-        areas[slot.receiver] = visible;
-        if (visible >= 0.0) {
-            atomicAdd(&counts.by_area, 1u);
-        }
+    while (unknown != 0u) {
+        let k = firstTrailingBit(unknown);
+        unknown &= unknown - 1u;
+        changes = with_change(changes, 1u << k, weight(view, edge_of(edges[listed_edge(lists[at + 2u + k])]), triangle));
     }
-    if (sums.changes > LARGEST_COUNT) {
+    return changes;
+}
+
+fn digit(bits: u32, k: u32) -> vec2<u32> {
+    return vec2<u32>(0u - ((bits >> k) & 1u));
+}
+
+// Adds what changes at one edge for the samples of `mask`. D grows where the reference point lies right of an edge of positive weight.
+fn folded(before: Sums, changes: Changes, k: u32, left: bool, mask: vec2<u32>) -> Sums {
+    var sums = before;
+    let ones = digit(changes.ones, k);
+    let twos = digit(changes.twos, k);
+    let fours = digit(changes.fours, k);
+    let sign = digit(changes.minus, k) ^ vec2<u32>(select(0u, 0xffffffffu, left));
+    sums.counters = counters_add(sums.counters, mask & ones, mask & twos, mask & fours, sign);
+    let size = (ones.x & 1u) + (twos.x & 2u) + (fours.x & 4u);
+    // More faces than that at one edge: counted as more than any counter holds.
+    sums.changes += select(size, LARGEST_COUNT + 1u, (digit(changes.many, k).x) != 0u);
+    sums.smallest = min(sums.smallest, size);
+    return sums;
+}
+
+// What is left to write once all edges are folded. `below` are the samples below the horizon.
+fn finish(fold: Fold, below: vec2<u32>) -> vec2<u32> {
+    let all = existing(fold.count);
+    let layered = counters_nonzero(fold.sums.counters) & all;
+    let mask = layered | (below & all);
+    let words = (light_frame.sample_count + 31u) / 32u;
+    let first = fold.slot.receiver * words + 2u * fold_settings.group;
+    blocked[first] = mask.x;
+    if (fold.count > 32u) {
+        blocked[first + 1u] = mask.y;
+    }
+    if (fold.sums.changes > LARGEST_COUNT || fold.chunk != 0u || !has_steps_left()) {
         atomicAdd(&counts.unfinished, 1u);
     }
+    return layered;
 }
 
-// What decides whether the way to a sample crosses an edge.
-struct Crossing {
-    low: vec2<f32>,
-    high: vec2<f32>,
-    line: vec3<f32>,
-    left: bool,
-    beyond_left: bool,
-}
-
-// Bit `k` of a group where sample `first + k` lies beyond the edge in its sector.
-fn crossed(crossing: Crossing, view: FrameView, first: u32, k: u32) -> u32 {
-    let s = placed_sample(light_frame, view, frame_samples.at[min(first + k, light_frame.sample_count - 1u)].xy);
-    let left_of_low = crossing.low.x * s.y - crossing.low.y * s.x >= 0.0;
-    let left_of_high = crossing.high.x * s.y - crossing.high.y * s.x >= 0.0;
-    let beyond = (crossing.line.x * s.x + crossing.line.y * s.y + crossing.line.z >= 0.0) != crossing.beyond_left;
-    return select(0u, 1u << (k & 31u), left_of_low != left_of_high && left_of_low == crossing.left && beyond);
-}
-
-// 64 samples, eight at a step: drivers on the CPU count steps.
-fn crossed_exactly(view: FrameView, image: EdgeImage, first: u32, count: u32) -> vec2<u32> {
-    let low = low_direction(image);
-    let high = high_direction(image);
-    let c = Crossing(low, high, image.line, image.left, line_left(image, low, high));
-    var mask = vec2<u32>(0u);
-    for (var k = 0u; k < count; k += 8u) {
-        let found = crossed(c, view, first, k) | crossed(c, view, first, k + 1u) | crossed(c, view, first, k + 2u)
-            | crossed(c, view, first, k + 3u) | crossed(c, view, first, k + 4u) | crossed(c, view, first, k + 5u)
-            | crossed(c, view, first, k + 6u) | crossed(c, view, first, k + 7u);
-        mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), k >= 32u);
-    }
-    return mask;
+fn is_below(slope: vec3<f32>, s: vec2<f32>) -> bool {
+    return slope.z + slope.x * s.x + slope.y * s.y <= 0.0;
 }
 
 // Whether loops still run.
@@ -216,9 +231,169 @@ fn has_steps_left() -> bool {
     var steps = 0u;
     for (var k = 0u; k < LAST_STEPS; k++) {
         // Read from a buffer, so that nobody can tell the number beforehand.
-        steps += select(0u, 1u, edges[min(k, arrayLength(&edges) - 1u)].incidence_count != 0xffffffffu);
+        steps += select(0u, 1u, edge_of(edges[min(k, arrayLength(&edges) - 1u)]).incidence_count != 0xffffffffu);
     }
     return steps == LAST_STEPS;
+}
+
+// Four samples as bits from `k` on. Where samples stand still, each has its place in the uniform, which drivers read once for all lanes.
+fn crossed4(c: Crossing, k: u32) -> u32 {
+    return select(0u, 1u << (k & 31u), crosses(c, group_samples.at[k].xy))
+        | select(0u, 2u << (k & 31u), crosses(c, group_samples.at[k + 1u].xy))
+        | select(0u, 4u << (k & 31u), crosses(c, group_samples.at[k + 2u].xy))
+        | select(0u, 8u << (k & 31u), crosses(c, group_samples.at[k + 3u].xy));
+}
+
+fn crossed16(c: Crossing, k: u32) -> u32 {
+    return crossed4(c, k) | crossed4(c, k + 4u) | crossed4(c, k + 8u) | crossed4(c, k + 12u);
+}
+
+fn crossed_standing(c: Crossing) -> vec2<u32> {
+    return vec2<u32>(crossed16(c, 0u) | crossed16(c, 16u), crossed16(c, 32u) | crossed16(c, 48u));
+}
+
+fn below4(slope: vec3<f32>, k: u32) -> u32 {
+    return select(0u, 1u << (k & 31u), is_below(slope, group_samples.at[k].xy))
+        | select(0u, 2u << (k & 31u), is_below(slope, group_samples.at[k + 1u].xy))
+        | select(0u, 4u << (k & 31u), is_below(slope, group_samples.at[k + 2u].xy))
+        | select(0u, 8u << (k & 31u), is_below(slope, group_samples.at[k + 3u].xy));
+}
+
+fn below16(slope: vec3<f32>, k: u32) -> u32 {
+    return below4(slope, k) | below4(slope, k + 4u) | below4(slope, k + 8u) | below4(slope, k + 12u);
+}
+
+fn below_standing(fold: Fold) -> vec2<u32> {
+    var mask = vec2<u32>(0u);
+    var crossing = select(1u, 0u, fold.is_above);
+    while (crossing != 0u) {
+        mask = vec2<u32>(
+            below16(fold.slope, 0u) | below16(fold.slope, 16u),
+            below16(fold.slope, 32u) | below16(fold.slope, 48u),
+        );
+        crossing >>= 1u;
+    }
+    return mask;
+}
+
+// Bits of the edges of a chunk over 64 samples that stand still.
+fn fold_standing(before: Sums, view: FrameView, at: u32, changes: Changes) -> Sums {
+    var sums = before;
+    var waiting = changes.edges;
+    while (waiting != 0u) {
+        let k = firstTrailingBit(waiting);
+        waiting &= waiting - 1u;
+        let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + k])]));
+        sums = folded(sums, changes, k, image.left, crossed_standing(crossing_of(image)));
+    }
+    return sums;
+}
+
+fn fold_moving_samples(before: Sums, view: FrameView, at: u32, changes: Changes, count: u32) -> Sums {
+    var sums = before;
+    var waiting = changes.edges;
+    while (waiting != 0u) {
+        let k = firstTrailingBit(waiting);
+        waiting &= waiting - 1u;
+        let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + k])]));
+        let crossing = crossing_of(image);
+        var mask = vec2<u32>(0u);
+        for (var i = 0u; i < count; i++) {
+            let s = placed_sample(light_frame, view, group_samples.at[i].xy);
+            let found = select(0u, 1u << (i & 31u), crosses(crossing, s));
+            mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), i >= 32u);
+        }
+        sums = folded(sums, changes, k, image.left, mask);
+    }
+    return sums;
+}
+
+// The sector and line of an edge, as areas take them.
+struct Beyond {
+    line: vec3<f32>,
+    from_direction: vec2<f32>,
+    to_direction: vec2<f32>,
+}
+
+fn beyond_of(image: EdgeImage) -> Beyond {
+    let low = low_direction(image);
+    let high = high_direction(image);
+    let line = select(-image.line, image.line, line_left(image, low, high));
+    return Beyond(line, select(high, low, image.left), select(low, high, image.left));
+}
+
+// An area in fixed point, with the sign of the change.
+fn signed_area(area: f32, changes: Changes, k: u32, left: bool) -> i32 {
+    let size = i32(((changes.ones >> k) & 1u) + 2u * ((changes.twos >> k) & 1u) + 4u * ((changes.fours >> k) & 1u));
+    let positive = (((changes.minus >> k) & 1u) != 0u) == left;
+    return i32(round(area * AREA_UNITS)) * select(-size, size, positive);
+}
+
+fn beyond_side(b: Beyond, from_corner: u32, to_corner: u32) -> f32 {
+    let corners = array<vec2<f32>, 2>(outline.corners[from_corner].xy, outline.corners[to_corner].xy);
+    return area_beyond_side(b.line, b.from_direction, b.to_direction, corners[0], corners[1]);
+}
+
+// The area of a light of four corners beyond the edges of a chunk.
+fn area_in_quadrangle(view: FrameView, at: u32, changes: Changes) -> i32 {
+    var sum = 0;
+    var waiting = changes.edges;
+    while (waiting != 0u) {
+        let k = firstTrailingBit(waiting);
+        waiting &= waiting - 1u;
+        let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + k])]));
+        let b = beyond_of(image);
+        let area = beyond_side(b, 3u, 0u) + beyond_side(b, 0u, 1u) + beyond_side(b, 1u, 2u) + beyond_side(b, 2u, 3u);
+        sum += signed_area(area, changes, k, image.left);
+    }
+    return sum;
+}
+
+fn area_in_polygon(view: FrameView, at: u32, changes: Changes) -> i32 {
+    var sum = 0;
+    var waiting = changes.edges;
+    while (waiting != 0u) {
+        let k = firstTrailingBit(waiting);
+        waiting &= waiting - 1u;
+        let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + k])]));
+        let b = beyond_of(image);
+        var area = 0.0;
+        for (var corner = 0u; corner < light_frame.outline_count; corner++) {
+            area += beyond_side(b, select(corner, light_frame.outline_count, corner == 0u) - 1u, corner);
+        }
+        sum += signed_area(area, changes, k, image.left);
+    }
+    return sum;
+}
+
+fn area_in_disc(view: FrameView, at: u32, changes: Changes) -> i32 {
+    var sum = 0;
+    var waiting = changes.edges;
+    while (waiting != 0u) {
+        let k = firstTrailingBit(waiting);
+        waiting &= waiting - 1u;
+        let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + k])]));
+        let b = beyond_of(image);
+        let area = area_beyond_arc(b.line, b.from_direction, b.to_direction, -light_frame.reference);
+        sum += signed_area(area, changes, k, image.left);
+    }
+    return sum;
+}
+
+// Samples and area of one receiver are summed: the area answers where it can, and no part of the light lies below the horizon.
+fn finish_area(fold: Fold, area: i32) {
+    let layered = finish(fold, below_standing(fold));
+    let sampled = 1.0 - f32(countOneBits(layered.x) + countOneBits(layered.y)) / f32(fold.count);
+    let visible = visible_area(fold.sums, area, fold.slot.depth, layered, sampled);
+    if (fold.is_above && visible >= 0.0) {
+        areas[fold.slot.receiver] = AREA_ANSWERS | bitcast<u32>(visible);
+        atomicAdd(&counts.by_area, 1u);
+    }
+}
+
+// Steps that a driver counts for a chunk, where every change takes so many inner ones.
+fn steps_in(at: u32, changes: Changes, inner: u32) -> u32 {
+    return 4u * lists[at + 1u] + countOneBits(changes.edges) * (4u + inner);
 }
 
 @compute @workgroup_size(64)
@@ -231,38 +406,116 @@ fn fold(
     if (!task.exists) {
         return;
     }
-    let receiver = receivers[slots[task.slot].receiver];
-    let view = frame_view(light_frame, receiver.position);
-    let is_above = is_above_horizon(light_frame, receiver, horizon_slope(view, receiver));
-    let wants_area = fold_settings.wants_area != 0u && task.group == 0u && is_above;
-    let first = task.group * 64u;
-    let count = min(64u, light_frame.sample_count - first);
-    var sums = begin_fold(slots[task.slot].depth);
-    let base = first_chunk_word(fold_settings.tile_count);
-    var chunk = task.chunk;
-    var steps = 0u;
-    while (chunk != 0u && steps < MOST_STEPS) {
-        let at = base + chunk * CHUNK;
-        let end = lists[at + 1u];
-        for (var k = 0u; k < end; k++) {
-            steps++;
-            let edge = edges[lists[at + 2u + k]];
-            let image = before_limit(view, edge, edge_image(view, edge));
-            if (image_matters(light_frame, image)) {
-                let change = weight(view, edge, receiver.triangle) * select(1, -1, image.left);
-                steps += edge.incidence_count;
-                if (change != 0) {
-                    steps += count / 8u + 1u + light_frame.outline_count;
-                    sums = folded(sums, image, change, crossed_exactly(view, image, first, count), wants_area);
-                }
-            }
-        }
-        chunk = lists[at];
+    var fold = begin(task);
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        let changes = changes_in(fold.view, fold.receiver.triangle, at);
+        fold.sums = fold_standing(fold.sums, fold.view, at, changes);
+        fold.steps += steps_in(at, changes, 0u);
+        fold.chunk = lists[at];
     }
-    finish(sums, view, receiver, task, wants_area);
-    if (chunk != 0u || !has_steps_left()) {
-        atomicAdd(&counts.unfinished, 1u);
+    finish(fold, below_standing(fold));
+}
+
+fn below_moving(fold: Fold) -> vec2<u32> {
+    var below = vec2<u32>(0u);
+    for (var k = 0u; k < select(fold.count, 0u, fold.is_above); k++) {
+        let s = placed_sample(light_frame, fold.view, group_samples.at[k].xy);
+        let found = select(0u, 1u << (k & 31u), is_below(fold.slope, s));
+        below |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), k >= 32u);
     }
+    return below;
+}
+
+// A sphere's samples move with the receiver.
+@compute @workgroup_size(64)
+fn fold_moving(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
+    }
+    var fold = begin(task);
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        let changes = changes_in(fold.view, fold.receiver.triangle, at);
+        fold.sums = fold_moving_samples(fold.sums, fold.view, at, changes, fold.count);
+        fold.steps += steps_in(at, changes, fold.count);
+        fold.chunk = lists[at];
+    }
+    finish(fold, below_moving(fold));
+}
+
+@compute @workgroup_size(64)
+fn fold_quadrangle(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
+    }
+    var fold = begin(task);
+    var area = 0;
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        let changes = changes_in(fold.view, fold.receiver.triangle, at);
+        fold.sums = fold_standing(fold.sums, fold.view, at, changes);
+        area += area_in_quadrangle(fold.view, at, changes);
+        fold.steps += steps_in(at, changes, 0u);
+        fold.chunk = lists[at];
+    }
+    finish_area(fold, area);
+}
+
+@compute @workgroup_size(64)
+fn fold_polygon(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
+    }
+    var fold = begin(task);
+    var area = 0;
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        let changes = changes_in(fold.view, fold.receiver.triangle, at);
+        fold.sums = fold_standing(fold.sums, fold.view, at, changes);
+        area += area_in_polygon(fold.view, at, changes);
+        fold.steps += steps_in(at, changes, light_frame.outline_count);
+        fold.chunk = lists[at];
+    }
+    finish_area(fold, area);
+}
+
+@compute @workgroup_size(64)
+fn fold_disc(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
+    }
+    var fold = begin(task);
+    var area = 0;
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        let changes = changes_in(fold.view, fold.receiver.triangle, at);
+        fold.sums = fold_standing(fold.sums, fold.view, at, changes);
+        area += area_in_disc(fold.view, at, changes);
+        fold.steps += steps_in(at, changes, 0u);
+        fold.chunk = lists[at];
+    }
+    finish_area(fold, area);
 }
 
 // Layers, opaque and in units of attenuation.
@@ -275,7 +528,7 @@ struct Layers {
 fn weight_of_both(view: FrameView, edge: OccluderEdge, triangle: u32) -> Layers {
     var sum = Layers(0, 0);
     for (var k = 0u; k < face_count(edge); k++) {
-        let face = incident_faces[edge.first_incidence + k];
+        let face = incident_face_of(incident_faces[edge.first_incidence + k]);
         let units = triangle_attenuation[face.reference >> 1u];
         let turn = turned(side_of_plane(face.normal, face.point, face.flatness, view.position), face);
         let left = select(turn, 0, (face.reference >> 1u) == triangle);
@@ -285,40 +538,51 @@ fn weight_of_both(view: FrameView, edge: OccluderEdge, triangle: u32) -> Layers 
     return sum;
 }
 
-// What the edges of one receiver add up to where some of what they border lets light through.
-struct AttenuatedSums {
-    counters: Counters,
-    attenuation: Attenuation,
-    changes: u32,           // by how much D can have changed at most
-    most: u32,              // and the attenuation
+// The edges of a chunk that may lie between a receiver and the light, one bit each.
+fn before_light(view: FrameView, at: u32) -> u32 {
+    let end = lists[at + 1u];
+    var found = 0u;
+    for (var k = 0u; k < end; k++) {
+        let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + k])]));
+        found |= select(0u, 1u << k, image_matters(light_frame, image));
+    }
+    return found;
 }
 
-fn attenuated(before: AttenuatedSums, change: Layers, faces: u32, mask: vec2<u32>) -> AttenuatedSums {
+// What semi-opaque layers add up to beside the counters of a fold.
+struct Attenuated {
+    attenuation: Attenuation,
+    most: u32,              // by how much it can have changed at most
+}
+
+fn attenuated_by(before: Attenuated, amount: i32, faces: u32, mask: vec2<u32>) -> Attenuated {
+    let changes = (mask.x | mask.y) != 0u && amount != 0;
+    let size = select(u32(abs(amount)), LARGEST_ATTENUATION + 1u, faces > MOST_ATTENUATING_FACES);
+    return Attenuated(
+        attenuation_add(before.attenuation, mask, amount),
+        min(before.most, LARGEST_ATTENUATION + 1u) + select(0u, size, changes),
+    );
+}
+
+fn with_layers(before: Sums, change: i32, mask: vec2<u32>) -> Sums {
     var sums = before;
-    sums.counters = counters_change(sums.counters, mask, change.opaque);
-    sums.attenuation = attenuation_add(sums.attenuation, mask, change.attenuation);
-    sums.changes += most_change(change.opaque);
-    let most = select(u32(abs(change.attenuation)), LARGEST_ATTENUATION + 1u, faces > MOST_ATTENUATING_FACES);
-    sums.most = min(sums.most, LARGEST_ATTENUATION + 1u) + most;
+    sums.counters = counters_change(sums.counters, mask, change);
+    sums.changes += most_change(change);
     return sums;
 }
 
-fn finish_attenuated(sums: AttenuatedSums, view: FrameView, receiver: Receiver, task: Task) {
-    let first = task.group * 64u;
-    let count = min(64u, light_frame.sample_count - first);
-    let slope = horizon_slope(view, receiver);
-    let crossing = select(count, 0u, is_above_horizon(light_frame, receiver, slope));
-    let hidden = counters_nonzero(sums.counters) | below_horizon(view, slope, first, crossing);
-    let at = slots[task.slot].receiver * light_frame.sample_count + first;
-    for (var k = 0u; k < count; k++) {
-        let passes = passed(attenuation_scale, attenuation_of(sums.attenuation, k));
+fn finish_attenuated(fold: Fold, attenuated: Attenuated, below: vec2<u32>) {
+    let hidden = counters_nonzero(fold.sums.counters) | below;
+    let at = fold.slot.receiver * light_frame.sample_count + 64u * fold_settings.group;
+    for (var k = 0u; k < fold.count; k++) {
+        let passes = passed(attenuation_scale, attenuation_of(attenuated.attenuation, k));
         sample_transmittance[at + k] = select(passes, 0.0, digit_of(hidden, k, 0u) != 0u);
     }
-    if (sums.changes > LARGEST_COUNT) {
-        atomicAdd(&counts.unfinished, 1u);
-    }
-    if (sums.most > LARGEST_ATTENUATION) {
+    if (attenuated.most > LARGEST_ATTENUATION) {
         atomicAdd(&counts.overflowed, 1u);
+    }
+    if (fold.sums.changes > LARGEST_COUNT || fold.chunk != 0u || !has_steps_left()) {
+        atomicAdd(&counts.unfinished, 1u);
     }
 }
 
@@ -333,42 +597,61 @@ fn fold_attenuated(
     if (!task.exists) {
         return;
     }
-    let slot = slots[task.slot];
-    let receiver = receivers[slot.receiver];
-    let view = frame_view(light_frame, receiver.position);
-    let first = task.group * 64u;
-    let count = min(64u, light_frame.sample_count - first);
-    var sums = AttenuatedSums(
-        counters_at(slot.depth), attenuation_at(slot.attenuation), u32(abs(slot.depth)), u32(abs(slot.attenuation))
-    );
-    let base = first_chunk_word(fold_settings.tile_count);
-    var chunk = task.chunk;
-    var steps = 0u;
-    while (chunk != 0u && steps < MOST_STEPS) {
-        let at = base + chunk * CHUNK;
-        let end = lists[at + 1u];
-        for (var k = 0u; k < end; k++) {
-            steps++;
-            let edge = edges[lists[at + 2u + k]];
-            let image = before_limit(view, edge, edge_image(view, edge));
-            if (image_matters(light_frame, image)) {
-                let weight = weight_of_both(view, edge, receiver.triangle);
-                steps += face_count(edge);
-                if (weight.opaque != 0 || weight.attenuation != 0) {
-                    steps += count / 8u + 1u;
-                    let mask = crossed_exactly(view, image, first, count);
-                    let sign = select(1, -1, image.left);
-                    let change = Layers(weight.opaque * sign, weight.attenuation * sign);
-                    if ((mask.x | mask.y) != 0u) {
-                        sums = attenuated(sums, change, face_count(edge), mask);
-                    }
-                }
-            }
+    var fold = begin(task);
+    var sums = Attenuated(attenuation_at(fold.slot.attenuation), u32(abs(fold.slot.attenuation)));
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        var waiting = before_light(fold.view, at);
+        fold.steps += 4u * lists[at + 1u];
+        while (waiting != 0u) {
+            let edge = edge_of(edges[listed_edge(lists[at + 2u + firstTrailingBit(waiting)])]);
+            waiting &= waiting - 1u;
+            let weight = weight_of_both(fold.view, edge, fold.receiver.triangle);
+            let image = image_before(fold.view, edge);
+            let mask = crossed_standing(crossing_of(image));
+            let sign = select(1, -1, image.left);
+            fold.sums = with_layers(fold.sums, weight.opaque * sign, mask);
+            sums = attenuated_by(sums, weight.attenuation * sign, face_count(edge), mask);
+            fold.steps += 4u + face_count(edge);
         }
-        chunk = lists[at];
+        fold.chunk = lists[at];
     }
-    finish_attenuated(sums, view, receiver, task);
-    if (chunk != 0u || !has_steps_left()) {
-        atomicAdd(&counts.unfinished, 1u);
+    finish_attenuated(fold, sums, below_standing(fold));
+}
+
+@compute @workgroup_size(64)
+fn fold_attenuated_moving(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
     }
+    var fold = begin(task);
+    var sums = Attenuated(attenuation_at(fold.slot.attenuation), u32(abs(fold.slot.attenuation)));
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        var waiting = before_light(fold.view, at);
+        fold.steps += 4u * lists[at + 1u];
+        while (waiting != 0u) {
+            let edge = edge_of(edges[listed_edge(lists[at + 2u + firstTrailingBit(waiting)])]);
+            waiting &= waiting - 1u;
+            let weight = weight_of_both(fold.view, edge, fold.receiver.triangle);
+            let image = image_before(fold.view, edge);
+            let crossing = crossing_of(image);
+            var mask = vec2<u32>(0u);
+            for (var i = 0u; i < fold.count; i++) {
+                let found = select(0u, 1u << (i & 31u), crosses(crossing, placed_sample(light_frame, fold.view, group_samples.at[i].xy)));
+                mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), i >= 32u);
+            }
+            let sign = select(1, -1, image.left);
+            fold.sums = with_layers(fold.sums, weight.opaque * sign, mask);
+            sums = attenuated_by(sums, weight.attenuation * sign, face_count(edge), mask);
+            fold.steps += 4u + face_count(edge) + fold.count;
+        }
+        fold.chunk = lists[at];
+    }
+    finish_attenuated(fold, sums, below_moving(fold));
 }

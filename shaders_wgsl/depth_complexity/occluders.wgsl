@@ -32,6 +32,38 @@ struct IncidentFace {
     flatness: f32,
 }
 
+// Records as they lie in buffers, in words: software drivers read four words at the price of one.
+struct EightWords {
+    first: vec4<u32>,
+    second: vec4<u32>,
+}
+
+struct TwelveWords {
+    first: vec4<u32>,
+    second: vec4<u32>,
+    third: vec4<u32>,
+}
+
+fn edge_of(words: EightWords) -> OccluderEdge {
+    return OccluderEdge(
+        bitcast<vec3<f32>>(words.first.xyz), words.first.w, bitcast<vec3<f32>>(words.second.xyz), words.second.w,
+    );
+}
+
+fn incident_face_of(words: EightWords) -> IncidentFace {
+    return IncidentFace(
+        bitcast<vec3<f32>>(words.first.xyz), words.first.w, bitcast<vec3<f32>>(words.second.xyz), bitcast<f32>(words.second.w),
+    );
+}
+
+fn face_of(words: TwelveWords) -> Face {
+    return Face(
+        bitcast<vec3<f32>>(words.first.xyz), words.first.w,
+        bitcast<vec3<f32>>(words.second.xyz), bitcast<f32>(words.second.w),
+        words.third,
+    );
+}
+
 // +1 where the canonical winding is seen counter-clockwise on the light, -1 clockwise, 0 edge-on: such a face hides nothing.
 fn side_of_plane(normal: vec3<f32>, point: vec3<f32>, flatness: f32, position: vec3<f32>) -> i32 {
     let height = dot(normal, position - point);

@@ -1,26 +1,31 @@
 // Counts the layers over the reference point by the signs with which the edges count, as far as the driver takes them alike in two
 // kernels: the reference point is displaced so that nearly none is close. The twin of `depth_of_reference.rs`.
 //
-// Where no face lies between a part of a tile and the light there is nothing to count. Where the reference point is hidden, all samples
+// Where no face lies between a bundle of receivers and the reference point there is nothing to count. Where the reference point is hidden, all samples
 // are, until a fold of edges says otherwise.
 //#import shared/slice.wgsl
 //#import shared/receiver.wgsl
 //#import depth_complexity/edge.wgsl
+//#import depth_complexity/clusters.wgsl
 //#import depth_complexity/tiles.wgsl
-//#import depth_complexity/tree.wgsl
+//#import depth_complexity/walk.wgsl
 //#import depth_complexity/attenuation.wgsl
 
 @group(0) @binding(0) var<uniform> slice: Slice;
 @group(0) @binding(1) var<uniform> light_frame: LightFrame;
 @group(0) @binding(2) var<storage, read> receivers: array<Receiver>;
-@group(0) @binding(3) var<storage, read> faces: array<Face>;
-@group(0) @binding(4) var<storage, read> edges: array<OccluderEdge>;
-@group(0) @binding(5) var<storage, read> face_tree: array<TreeNode>;
-@group(0) @binding(6) var<storage, read> parts: array<TilePart>;
+@group(0) @binding(3) var<storage, read> faces: array<TwelveWords>;
+@group(0) @binding(4) var<storage, read> edges: array<EightWords>;
+@group(0) @binding(5) var<storage, read> first_faces: array<u32>;
+@group(0) @binding(6) var<storage, read> lists: array<u32>;
 @group(0) @binding(7) var<storage, read_write> slots: array<Slot>;
 @group(0) @binding(8) var<storage, read_write> blocked: array<u32>;
+@group(0) @binding(10) var<uniform> cluster_range: ClusterRange;
 @group(0) @binding(9) var<storage, read_write> counts: ListCounts;
-@group(0) @binding(10) var<storage, read> triangle_attenuation: array<u32>;
+@group(0) @binding(11) var<storage, read> triangle_attenuation: array<u32>;
+
+// Rounding, with room to spare.
+const SLACK: f32 = 4e-6;
 
 // Two directions with a smaller sine between them are one, or opposite.
 const NO_TURN: f32 = 1e-6;
@@ -38,7 +43,7 @@ fn cover(view: FrameView, face: Face) -> i32 {
     for (var k = 0u; k < 4u; k++) {
         let reference = face.sides[k];
         if (reference != NO_SIDE) {
-            let image = edge_image(view, edges[reference >> 1u]);
+            let image = edge_image(view, edge_of(edges[reference >> 1u]));
             let low_is_ahead = image.low.z > 0.0;
             let high_is_ahead = image.high.z > 0.0;
             if (low_is_ahead || high_is_ahead) {
@@ -84,12 +89,22 @@ fn cover(view: FrameView, face: Face) -> i32 {
     return select(0, side * turns, before);
 }
 
+// Whether the way to the reference point leads off a face's plane, by more than rounding could turn it: then it does not meet the face.
+fn turns_away(view: FrameView, face: Face) -> bool {
+    let height = dot(face.normal, view.position - face.point);
+    let slope = dot(face.normal, view.way);
+    let size = dot(abs(face.normal), 1.0 + abs(view.position) + abs(face.point));
+    let margin = SLACK * size;
+    let turn = SLACK * dot(abs(face.normal), abs(view.way));
+    return ((height > margin) & (slope > turn)) | ((height < -margin) & (slope < -turn));
+}
+
 // Whether loops still run.
 fn has_steps_left() -> bool {
     var steps = 0u;
     for (var k = 0u; k < LAST_STEPS; k++) {
         // Read from a buffer, so that nobody can tell the number beforehand.
-        steps += select(0u, 1u, face_tree[min(k, arrayLength(&face_tree) - 1u)].skip != 0u);
+        steps += select(0u, 1u, lists[min(k, arrayLength(&lists) - 1u)] != 0xffffffffu);
     }
     return steps == LAST_STEPS;
 }
@@ -99,31 +114,41 @@ fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if (invocation.x >= slice.count) {
         return;
     }
-    let at = slice.first + invocation.x;
+    let item = slice.first + invocation.x;
+    let tile_count = cluster_range.tile_count;
+    let tile = scattered(item / TILE, tile_count);
+    let at = tile * TILE + item % TILE;
+    if (at >= cluster_range.receiver_count) {
+        return;
+    }
     let slot = slots[at];
-    if (slot.depth == NO_VIEW || parts[2u * (at / TILE) + slot.part].has_faces == 0u) {
+    let bundle = (2u * tile + slot.part) * BUNDLES + (at % TILE) / BUNDLE;
+    var chunk = select(first_faces[bundle], 0u, slot.depth == NO_VIEW);
+    if (chunk == 0u) {
         return;
     }
     let receiver = receivers[slot.receiver];
     let view = frame_view(light_frame, receiver.position);
+    let base = first_chunk_word(tile_count);
     var depth = 0;
-    var node = 0u;
     var steps = 0u;
-    while (node < arrayLength(&face_tree) && steps < LONGEST_WALK) {
-        steps++;
-        let box = face_tree[node];
-        let met = way_meets(view.position, view.way, box);
-        node = select(box.skip, node + 1u, met && box.leaf == 0u);
-        let first = box.leaf >> LEAF_BITS;
-        let count = select(0u, box.leaf & ((1u << LEAF_BITS) - 1u), met);
-        for (var k = first; k < first + count; k++) {
-            let face = faces[k];
-            if (face.triangle != receiver.triangle) {
-                depth += cover(view, face);
-            }
+    while (chunk != 0u && steps < MOST_STEPS) {
+        let here = base + chunk * CHUNK;
+        let end = lists[here + 1u];
+        // Drivers on the CPU run both sides of a branch, and skip loops only.
+        var waiting = 0u;
+        for (var k = 0u; k < end; k++) {
+            let face = face_of(faces[lists[here + 2u + k]]);
+            waiting |= select(0u, 1u << k, (face.triangle != receiver.triangle) & !turns_away(view, face));
         }
+        steps += 2u * end + 5u * countOneBits(waiting);
+        while (waiting != 0u) {
+            depth += cover(view, face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]));
+            waiting &= waiting - 1u;
+        }
+        chunk = lists[here];
     }
-    if (node < arrayLength(&face_tree) || !has_steps_left()) {
+    if (chunk != 0u || !has_steps_left()) {
         atomicAdd(&counts.unfinished, 1u);
     }
     slots[at].depth = depth;
@@ -139,39 +164,50 @@ fn reference_depth_attenuated(@builtin(global_invocation_id) invocation: vec3<u3
     if (invocation.x >= slice.count) {
         return;
     }
-    let at = slice.first + invocation.x;
+    let item = slice.first + invocation.x;
+    let tile_count = cluster_range.tile_count;
+    let tile = scattered(item / TILE, tile_count);
+    let at = tile * TILE + item % TILE;
+    if (at >= cluster_range.receiver_count) {
+        return;
+    }
     let slot = slots[at];
-    if (slot.depth == NO_VIEW || parts[2u * (at / TILE) + slot.part].has_faces == 0u) {
+    let bundle = (2u * tile + slot.part) * BUNDLES + (at % TILE) / BUNDLE;
+    var chunk = select(first_faces[bundle], 0u, slot.depth == NO_VIEW);
+    if (chunk == 0u) {
         return;
     }
     let receiver = receivers[slot.receiver];
     let view = frame_view(light_frame, receiver.position);
+    let base = first_chunk_word(tile_count);
     var depth = 0;
     var attenuation = 0;
     var most = 0u;
-    var node = 0u;
     var steps = 0u;
-    while (node < arrayLength(&face_tree) && steps < LONGEST_WALK) {
-        steps++;
-        let box = face_tree[node];
-        let met = way_meets(view.position, view.way, box);
-        node = select(box.skip, node + 1u, met && box.leaf == 0u);
-        let first = box.leaf >> LEAF_BITS;
-        let count = select(0u, box.leaf & ((1u << LEAF_BITS) - 1u), met);
-        for (var k = first; k < first + count; k++) {
-            let face = faces[k];
-            if (face.triangle != receiver.triangle) {
-                let units = triangle_attenuation[face.triangle];
-                let times = cover(view, face);
-                depth += select(0, times, units == OPAQUE);
-                if (units != OPAQUE && times != 0 && most <= LARGEST_ATTENUATION) {
-                    attenuation += times * i32(units);
-                    most += units;
-                }
-            }
+    while (chunk != 0u && steps < MOST_STEPS) {
+        let here = base + chunk * CHUNK;
+        let end = lists[here + 1u];
+        // Drivers on the CPU run both sides of a branch, and skip loops only.
+        var waiting = 0u;
+        for (var k = 0u; k < end; k++) {
+            let face = face_of(faces[lists[here + 2u + k]]);
+            waiting |= select(0u, 1u << k, (face.triangle != receiver.triangle) & !turns_away(view, face));
         }
+        steps += 2u * end + 5u * countOneBits(waiting);
+        while (waiting != 0u) {
+            let face = face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]);
+            let units = triangle_attenuation[face.triangle];
+            let times = cover(view, face);
+            depth += select(0, times, units == OPAQUE);
+            if (units != OPAQUE && times != 0 && most <= LARGEST_ATTENUATION) {
+                attenuation += times * i32(units);
+                most += units;
+            }
+            waiting &= waiting - 1u;
+        }
+        chunk = lists[here];
     }
-    if (node < arrayLength(&face_tree) || !has_steps_left()) {
+    if (chunk != 0u || !has_steps_left()) {
         atomicAdd(&counts.unfinished, 1u);
     }
     if (most > LARGEST_ATTENUATION) {

@@ -11,8 +11,8 @@
 @group(0) @binding(0) var<uniform> slice: Slice;
 @group(0) @binding(1) var<uniform> light_frame: LightFrame;
 @group(0) @binding(2) var<uniform> cluster_range: ClusterRange;
-@group(0) @binding(3) var<storage, read> edges: array<OccluderEdge>;
-@group(0) @binding(4) var<storage, read> incident_faces: array<IncidentFace>;
+@group(0) @binding(3) var<storage, read> edges: array<EightWords>;
+@group(0) @binding(4) var<storage, read> incident_faces: array<EightWords>;
 @group(0) @binding(5) var<storage, read_write> clusters: array<Cluster>;
 
 // Which side of a face the whole light is on; 0 where the face's plane meets the light.
@@ -46,8 +46,8 @@ fn can_be_silhouette(edge: OccluderEdge) -> bool {
     if (edge.incidence_count != 2u) {
         return true;
     }
-    let a = incident_faces[edge.first_incidence];
-    let b = incident_faces[edge.first_incidence + 1u];
+    let a = incident_face_of(incident_faces[edge.first_incidence]);
+    let b = incident_face_of(incident_faces[edge.first_incidence + 1u]);
     let side_a = turned(side_of_light(a), a);
     let side_b = turned(side_of_light(b), b);
     return side_a + side_b != 0 || side_a == 0;
@@ -63,7 +63,7 @@ fn silhouettes(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let end = min(first + CLUSTER, cluster_range.edge_count);
     var found = Cluster(vec3<f32>(1e30), 0u, vec3<f32>(-1e30), 0u);
     for (var at = first; at < end; at++) {
-        let edge = edges[at];
+        let edge = edge_of(edges[at]);
         if (can_be_silhouette(edge)) {
             found.silhouettes |= 1u << (at - first);
             found.low = min(found.low, min(edge.low, edge.high));

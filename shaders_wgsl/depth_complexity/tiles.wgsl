@@ -33,14 +33,50 @@ struct ListCounts {
     reserved1: u32,
 }
 
-// The lists: for each part of a tile that has edges, the part and its first chunk; then, from `first_chunk_word` on, chunks.
-//
-// A list grows by chunks: the next chunk, how many edges stand in this one, and the edges.
+// A tile's bundles: runs of 8 receivers, whose shafts are much thinner than the tile's.
+const BUNDLE: u32 = 8u;
+const BUNDLES: u32 = 8u;
+
+// The lists: a head for each part of a tile that has edges; then, from `first_chunk_word` on, chunks. A head is the part, the first
+// chunk of its list, and the first chunks of its bundles' lists.
+const HEAD: u32 = 10u;
+
+// A list grows by chunks: the next chunk, how many entries stand in this one, and those: edges, or faces.
 const CHUNK: u32 = 32u;
 const CHUNK_EDGES: u32 = 30u;
 
 fn first_chunk_word(tile_count: u32) -> u32 {
-    return 4u * tile_count;
+    return 2u * HEAD * tile_count;
+}
+
+// An entry is an edge and, where all receivers of the list agree on it, the edge's weight: -2 to 2, 0 where each finds its own.
+const EDGE_BITS: u32 = 29u;
+const NO_ENTRY: u32 = 0xffffffffu;
+
+fn listed(edge: u32, weight: i32) -> u32 {
+    return edge | (select(0u, u32(weight + 4), weight != 0) << EDGE_BITS);
+}
+
+fn listed_edge(entry: u32) -> u32 {
+    return entry & ((1u << EDGE_BITS) - 1u);
+}
+
+// 0 where it is not listed.
+fn listed_weight(entry: u32) -> i32 {
+    let code = entry >> EDGE_BITS;
+    return select(0, i32(code) - 4, code != 0u);
+}
+
+// Where a list grows: its first chunk and its last, and how many edges stand in that.
+struct Tail {
+    first: u32,
+    chunk: u32,
+    filled: u32,
+    full: bool,
+}
+
+fn no_list() -> Tail {
+    return Tail(0u, 0u, CHUNK_EDGES, false);
 }
 
 fn plane_excludes_box(plane: vec4<f32>, middle: vec3<f32>, half: vec3<f32>) -> bool {

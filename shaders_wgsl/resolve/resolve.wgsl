@@ -11,7 +11,7 @@
 @group(0) @binding(4) var<storage, read_write> visibility: array<f32>;
 @group(0) @binding(5) var<storage, read_write> standard_error: array<f32>;
 @group(0) @binding(6) var<storage, read> sample_radiance: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read> areas: array<f32>;
+@group(0) @binding(7) var<storage, read> areas: array<u32>;   // a float, with its sign set where it answers
 @group(0) @binding(8) var<storage, read> sample_transmittance: array<f32>;
 
 // Welford's update of mean and standard error with the value of one more pass. The standard error's slot holds the sum of
@@ -68,7 +68,7 @@ fn resolve(@builtin(global_invocation_id) invocation: vec3<u32>) {
     accumulate(index, 1.0 - f32(hidden) / f32(known), known);
 }
 
-// Where the visible area of the light is known it answers, without noise; elsewhere it is negative, and samples answer.
+// Where the visible area of the light is known it answers, without noise; elsewhere samples do.
 @compute @workgroup_size(64)
 fn resolve_areas(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if (invocation.x >= slice.count) {
@@ -82,10 +82,11 @@ fn resolve_areas(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let sampled = 1.0 - f32(hidden) / f32(sampling.count);
     // Twice the largest error seen for stratified samples of a half plane.
     let bound = 2.0 * pow(f32(sampling.count), -0.75);
-    let by_area = areas[index] >= 0.0 && abs(areas[index] - sampled) <= bound;
+    let area = bitcast<f32>(areas[index] & 0x7fffffffu);
+    let by_area = (areas[index] >> 31u) != 0u && abs(area - sampled) <= bound;
     accumulate_with_error(
         index,
-        select(sampled, areas[index], by_area),
+        select(sampled, area, by_area),
         select(binomial_error(sampled, sampling.count), 0.0, by_area),
     );
 }

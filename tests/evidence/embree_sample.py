@@ -8,9 +8,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from peers import Embree
 
 import softshadow as ss
+from softshadow.bench.embree_open3d import Open3D
 
 STORED = Path(__file__).parents[1] / "python" / "embree_sample.npz"
 
@@ -29,7 +29,7 @@ def main() -> None:
     lifted = placed.positions[placed.valid] + 1e-5 * placed.normals[placed.valid]
     origins = lifted.astype(np.float32)
     samples = ss.light_points(shipped.light, 16, scene=shipped.scene).positions.reshape(-1, 3).astype(np.float32)
-    visible, _ = Embree(vertices, faces).visible(origins, samples)
+    visible, _ = Open3D(vertices, faces).visible(origins, samples)
     np.savez_compressed(STORED, origins=origins, samples=samples, visible=np.packbits(visible, axis=1))
     print(f"{STORED}: {visible.size} rays, {visible.mean():.3f} of them visible")
 

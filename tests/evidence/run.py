@@ -2,7 +2,7 @@
 
 1. Ray by ray against Embree (Open3D) on the same receivers and samples; each ray that differs is listed with the
    verdict of float64.
-2. Time against error, taking turns with Open3D and with a Mitsuba kernel, ratios from one run.
+2. Time against error beside the tracers of ``softshadow.bench.peers``, ratios from one run.
 3. Silhouette edges against float64 rays on ten million receivers; areas against exact unions; mutants.
 4. The table of the README: techniques on shipped scenes.
 """
@@ -10,19 +10,18 @@
 from __future__ import annotations
 
 import argparse
-import statistics
 import sys
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 from edges import against_rays, mutants
-from peers import Embree, Mitsuba
 from rays64 import judge
-from scenes import Measured, on_ground
 
 import softshadow as ss
+from softshadow.bench import peers
+from softshadow.bench.embree_open3d import Open3D
+from softshadow.bench.scenes import Measured, find
 
 LARGEST_SHARE = 1e-5
 MARK = "<!-- speed against error -->"
@@ -75,7 +74,7 @@ def sections_of(report: Path) -> dict[str, list[str]]:
 
 def models() -> list[Measured]:
     """The meshes that are measured."""
-    return [on_ground("stanford-bunny.obj"), on_ground("teapot.obj")]
+    return [find("stanford-bunny.obj"), find("teapot.obj")]
 
 
 def ray_by_ray() -> tuple[list[str], bool]:
@@ -85,8 +84,13 @@ def ray_by_ray() -> tuple[list[str], bool]:
 
 
 def time_against_error(rounds: int) -> tuple[list[str], bool]:
-    """Every model against the clock."""
-    return [line for model in models() for line in against_time(model, rounds)], True
+    """Every model against the clock and beside the others, all of which must be there."""
+    tracers, skipped = peers.installed()
+    lines = [f"Skipped: {reason}" for reason in skipped]
+    for model in models():
+        found = peers.beside(model, tracers, peers.OURS, rounds, "software")
+        lines += [*peers.lines(found), *peers.ratio_lines(found)]
+    return lines, not skipped
 
 
 def shipped_scenes(rounds: int, readme: Path) -> tuple[list[str], bool]:
@@ -120,7 +124,7 @@ def against_embree(model: Measured) -> tuple[list[str], bool]:
     assert (origins == result.positions[seen]).all(), "positions are float32 numbers in this frame"
     targets = ss.light_points(model.light, 64, scene=model.scene).positions.reshape(-1, 3).astype(np.float32)
     ours = result.visible_samples[seen]
-    theirs, _ = Embree(model.vertices, model.faces).visible(origins, targets)
+    theirs, _ = Open3D(model.vertices, model.faces).visible(origins, targets)
     height = np.einsum("rc,rsc->rs", normals.astype(np.float64), targets[None] - origins[:, None].astype(np.float64))
     compared = height > 1e-6
     differing = np.argwhere((ours != theirs) & compared)
@@ -146,92 +150,6 @@ def against_embree(model: Measured) -> tuple[list[str], bool]:
         lines.append(f"| {receiver} | {sample} | {' | '.join(word[v] for v in row)} | {near:.2g} |")
     lines += ["", f"Where they differ, {wrong} of ours contradict float64 beyond rounding.", ""]
     return lines, share <= LARGEST_SHARE and wrong == 0
-
-
-def against_time(model: Measured, rounds: int) -> list[str]:
-    """Median milliseconds and error in the penumbra, by samples; the tracers take turns."""
-    placed = ss.visibility(model.scene, model.light, camera=model.camera, receivers=True, device="software")
-    seen = placed.valid
-    origins, normals = placed.positions[seen].astype(np.float32), placed.normals[seen]
-    points = {"points": origins.astype(np.float64), "normals": normals.astype(np.float64)}
-    reference = ss.visibility(
-        model.scene,
-        model.light,
-        **points,
-        technique=ss.RayTraced(samples=256, passes=16, pattern="low_discrepancy", seed=99),
-        device="software",
-    )
-    penumbra = (reference.values > 0.002) & (reference.values < 0.998)
-    spread = float(np.sqrt(np.mean(reference.standard_error[penumbra] ** 2)))
-    embree, mitsuba = Embree(model.vertices, model.faces), Mitsuba(model.vertices, model.faces)
-    lines = [
-        f"**{model.name}**, 512 × 512, {int(seen.sum()):,} receivers, {int(penumbra.sum()):,} of them in the "
-        f"penumbra; the reference has 4,096 samples and a standard error of {spread:.4f}.",
-        "",
-        "| samples | rays ms | RMSE | with 16 probes ms | RMSE | edges ms | RMSE | Open3D ms | RMSE | "
-        "Mitsuba kernel ms | RMSE | rays : Open3D | rays : Mitsuba | edges : Open3D | edges : Mitsuba | edges : rays |",
-        "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|",
-    ]
-
-    def rmse(values: np.ndarray) -> float:
-        return float(np.sqrt(np.mean((values[penumbra] - reference.values[penumbra]) ** 2)))
-
-    for samples in (16, 64, 256):
-        targets = ss.light_points(model.light, samples, scene=model.scene).positions.reshape(-1, 3).astype(np.float32)
-        facing = np.empty((len(origins), samples), dtype=bool)
-        for start in range(0, len(origins), 20000):
-            part = slice(start, start + 20000)
-            facing[part] = np.einsum("rc,rsc->rs", normals[part], targets[None] - origins[part, None]) > 0
-
-        def ours(technique: ss.Technique) -> tuple[np.ndarray, float]:
-            result = ss.visibility(
-                model.scene,
-                model.light,
-                **points,
-                technique=technique,
-                standard_error=False,
-                device="software",
-            )
-            return result.values, result.info["wall_ms"]
-
-        def open3d(targets: np.ndarray = targets, facing: np.ndarray = facing) -> tuple[np.ndarray, float]:
-            parts, total = [], 0.0
-            for start in range(0, len(origins), 100_000):
-                visible, ms = embree.visible(origins[start : start + 100_000], targets)
-                parts.append((visible & facing[start : start + 100_000]).mean(axis=1))
-                total += ms
-            return np.concatenate(parts), total
-
-        def mitsuba_kernel(targets: np.ndarray = targets) -> tuple[np.ndarray, float]:
-            return mitsuba.visibility(origins, normals, targets)
-
-        techniques = {"rays": ss.RayTraced(samples=samples), "edges": ss.DepthComplexity(samples=samples)}
-        if samples > 16:
-            techniques["probes"] = ss.RayTraced(samples=samples, probes=16)
-        runs = {name: partial(ours, technique) for name, technique in techniques.items()}
-        runs |= {"open3d": open3d, "mitsuba": mitsuba_kernel}
-        times: dict[str, list[float]] = {name: [] for name in runs}
-        errors: dict[str, float] = {}
-        for turn in range(rounds + 1):
-            for name, run in runs.items():
-                values, ms = run()
-                errors[name] = rmse(values)
-                if turn:
-                    times[name].append(ms)
-        median = {name: statistics.median(values) for name, values in times.items()}
-
-        def cell(name: str, median: dict[str, float] = median, errors: dict[str, float] = errors) -> str:
-            return f"{median[name]:.0f} | {errors[name]:.4f}" if name in median else "– | –"
-
-        def ratio(a: str, b: str, median: dict[str, float] = median) -> str:
-            return f"{median[a] / median[b]:.2f}" if a in median else "–"
-
-        lines.append(
-            f"| {samples} | {cell('rays')} | {cell('probes')} | {cell('edges')} | {cell('open3d')} | "
-            f"{cell('mitsuba')} | {ratio('rays', 'open3d')} | {ratio('rays', 'mitsuba')} | "
-            f"{ratio('edges', 'open3d')} | {ratio('edges', 'mitsuba')} | {ratio('edges', 'rays')} |"
-        )
-    return [*lines, ""]
 
 
 def shipped_table(rounds: int) -> list[str]:

@@ -174,7 +174,7 @@ fn shader(file: &str) -> &'static str {
 }
 
 /// Constants of `depth_complexity`, each with what the kernels make of it.
-fn counted_by_kernels() -> [(&'static str, u64); 9] {
+fn counted_by_kernels() -> [(&'static str, u64); 13] {
     let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/{file}.wgsl"), name).bytes);
     let value = |file: &str, name| constant(shader(&format!("depth_complexity/{file}.wgsl")), name).unwrap();
     [
@@ -187,6 +187,10 @@ fn counted_by_kernels() -> [(&'static str, u64); 9] {
         ("CLUSTER_BYTES", bytes("clusters", "Cluster")),
         ("MOST_SAMPLES", bytes("frame", "FrameSamples") / 16),
         ("MOST_CORNERS", bytes("fold", "Outline") / 16),
+        ("GROUP", bytes("fold", "GroupSamples") / 16),
+        ("HEAD_BYTES", 4 * value("tiles", "HEAD")),
+        ("BUNDLES", value("tiles", "BUNDLES")),
+        ("STRIDES", value("walk", "STRIDES")),
     ]
 }
 
@@ -216,15 +220,19 @@ fn what_depth_complexity_counts_is_what_its_kernels_count() {
 
 #[test]
 fn lists_of_edges_lie_as_plans_say() {
-    // A list's head is two words for each of a tile's two parts; a chunk is the next one, a count, and edges.
+    // A head for each of a tile's two parts; a chunk is the next one, a count, and entries.
     let tiles = shader("depth_complexity/tiles.wgsl");
-    assert!(tiles.contains("return 4u * tile_count;"));
+    assert!(tiles.contains("return 2u * HEAD * tile_count;"));
     assert!(
         source("src/depth_complexity/tiled.rs")
-            .contains("u64::from(tile_count) * (16 + CHUNKS_PER_TILE * CHUNK_BYTES)")
+            .contains("u64::from(tile_count) * (2 * HEAD_BYTES + CHUNKS_PER_TILE * CHUNK_BYTES)")
     );
     let of = |name| constant(tiles, name).unwrap();
     assert_eq!(of("CHUNK"), of("CHUNK_EDGES") + 2);
+    assert_eq!(of("HEAD"), of("BUNDLES") + 2);
+    assert_eq!(of("TILE"), of("BUNDLES") * of("BUNDLE"));
+    // One bit an entry of a chunk.
+    assert!(of("CHUNK_EDGES") <= 32);
     // A cluster, and a group of them, has a bit for each.
     assert_eq!(constant(shader("depth_complexity/clusters.wgsl"), "CLUSTER"), Some(32));
     // The front door reads these words by number.

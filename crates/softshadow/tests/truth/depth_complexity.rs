@@ -113,7 +113,7 @@ fn folds_that_a_driver_cuts_short_are_told() {
     let mut refused = 0;
     // Far away, so that there is room for long lists.
     let far = random.points(4032, [30.0, 50.0], [30.0, 50.0], [0.0, 0.0]);
-    for each in [50, 90, 110, 130, 150, 200, 260] {
+    for each in [50, 130, 260, 500, 800, 1200, 2000] {
         let mut soup = Vec::new();
         let receivers: Vec<Point> = (0..64).map(|i| [f64::from(i % 8) * 0.1, f64::from(i / 8) * 0.1, 0.0]).collect();
         for p in &receivers {

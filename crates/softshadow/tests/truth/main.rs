@@ -14,6 +14,8 @@ mod common;
 mod contact;
 mod coverage;
 mod depth_complexity;
+mod direct_illumination;
+mod equation_6;
 mod hard_shadows;
 mod invariance;
 mod lights;

@@ -282,14 +282,17 @@ fn more_attenuation_than_sums_hold_is_told() {
         with(&all, |_| 0.999_999_94)
     };
     let light = [lamp(rectangle(0.5, 0.5), [0.0, 0.0, 3.0])];
-    let under = points(Random(56).points(64, [-0.1, 0.1], [-0.1, 0.1], [0.0, 0.0]));
+    let mut under = Random(56).points(64, [-0.1, 0.1], [-0.1, 0.1], [0.0, 0.0]);
+    // Far away, so that there is room for long lists.
+    under.extend(Random(57).points(2496, [30.0, 50.0], [30.0, 50.0], [0.0, 0.0]));
+    let under = points(under);
     for folds in [true, false] {
         let run = |sheets| {
             let shade = stack(sheets, folds);
             visibility(context(), &shade, &light, &under, &edges(64), &Options::default(), &mut |_, _| true)
         };
         let fits = run(1200).unwrap();
-        assert_eq!(fits.values, [0.0; 64]);
+        assert_eq!(fits.values[..64], [0.0; 64]);
         assert!(!folds || fits.info.silhouette_edges > 0);
         let error = run(1500).unwrap_err();
         let words = error.to_string();

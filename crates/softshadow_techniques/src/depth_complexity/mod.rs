@@ -116,9 +116,11 @@ impl DepthComplexity {
     }
 
     pub(crate) fn bytes_per_receiver(&self, channels: u64, is_semi_opaque: bool) -> u64 {
+        let area = if self.exact_area && channels == 1 { 4 } else { 0 };
         let passes = if is_semi_opaque { opacity::bytes_per_receiver(self.samples) } else { 0 };
         // Order, slot, mask, decided samples, area; its part of a tile; values and their errors.
-        4 + SLOT_BYTES + u64::from(self.words()) * 4 + 4 + 4 + tiled::list_bytes_per_receiver() + 8 * channels + passes
+        let list = tiled::list_bytes_per_receiver();
+        4 + SLOT_BYTES + u64::from(self.words()) * 4 + 4 + area + list + 8 * channels + passes
     }
 
     fn words(&self) -> u32 {
@@ -153,18 +155,13 @@ pub(crate) fn plan(request: &Request<'_>, settings: &DepthComplexity) -> Plan {
         triangles: plan.uploaded("triangle attenuation", settings.attenuation.of(contents)),
         samples: opacity::append(&mut plan, request, settings.samples, light.sampling, blocked),
     });
-    let reads = Reads { frame, samples, receivers, slots, blocked };
-    let areas =
-        occluders.map(|occluders| tiled::append_fold(&mut plan, request, occluders, &reads, attenuated.as_ref()));
+    let reads = Reads { frame, receivers, slots, blocked };
+    let areas = occluders
+        .and_then(|occluders| tiled::append_fold(&mut plan, request, settings, occluders, &reads, attenuated.as_ref()));
 
     let decided = plan.buffer("decided samples", count as u64 * 4);
     plan.clear("all samples decided", "every mask speaks for all samples", decided);
-    let masks = Masks {
-        blocked,
-        decided,
-        areas: areas.filter(|_| settings.exact_area && attenuated.is_none()),
-        transmittance: attenuated.map(|passing| passing.samples),
-    };
+    let masks = Masks { blocked, decided, areas, transmittance: attenuated.map(|passing| passing.samples) };
     resolve::append(&mut plan, request, settings.samples, &light, receivers, masks);
     plan
 }
@@ -172,7 +169,6 @@ pub(crate) fn plan(request: &Request<'_>, settings: &DepthComplexity) -> Plan {
 /// What several passes read.
 struct Reads {
     frame: ResourceId,
-    samples: ResourceId,
     receivers: ResourceId,
     slots: ResourceId,
     blocked: ResourceId,

@@ -2,7 +2,8 @@
 
 use crate::request::{ReceiverSource, Request};
 
-/// Receivers of a block in the order of the tiles: pixels in squares of 8 × 8, points along a space-filling curve.
+/// Receivers of a block in the order of the tiles: pixels in squares of 8 × 8 made of blocks of
+/// 4 × 2, points along a space-filling curve.
 pub(super) fn order(request: &Request<'_>) -> Vec<u32> {
     let count = request.block.count;
     match request.receivers {
@@ -10,9 +11,14 @@ pub(super) fn order(request: &Request<'_>) -> Vec<u32> {
             let width = camera.size()[0] as usize;
             let rows = count / width.max(1);
             let mut order = Vec::with_capacity(count);
-            for (top, left) in (0..rows).step_by(8).flat_map(|top| (0..width).step_by(8).map(move |left| (top, left))) {
-                for row in top..(top + 8).min(rows) {
-                    order.extend((left..(left + 8).min(width)).map(|column| (row * width + column) as u32));
+            let blocks = |[left, top]: [usize; 2], [right, bottom]: [usize; 2], [wide, high]: [usize; 2]| {
+                (top..bottom).step_by(high).flat_map(move |y| {
+                    (left..right).step_by(wide).map(move |x| ([x, y], [(x + wide).min(right), (y + high).min(bottom)]))
+                })
+            };
+            for (start, end) in blocks([0, 0], [width, rows], [8, 8]) {
+                for ([left, top], [right, bottom]) in blocks(start, end, [4, 2]) {
+                    order.extend((top..bottom).flat_map(|row| (left..right).map(move |x| (row * width + x) as u32)));
                 }
             }
             order

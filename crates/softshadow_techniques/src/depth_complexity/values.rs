@@ -16,6 +16,8 @@ use crate::request::Request;
 
 /// Samples of one set at most: as many as one uniform holds.
 pub(super) const MOST_SAMPLES: u32 = 256;
+/// Samples that one fold holds.
+pub(super) const GROUP: u32 = 64;
 /// Corners of a polygon light at most.
 pub(super) const MOST_CORNERS: usize = 64;
 /// An area is not believed when it differs from the samples' share by more than this over `samples^(3/4)`: twice the largest error seen
@@ -59,7 +61,7 @@ pub struct ClusterRange {
 #[repr(C)]
 pub struct FoldSettings {
     slot_count: u32,
-    wants_area: u32,
+    group: u32,
     sampling_bound: f32,
     tile_count: u32,
 }
@@ -108,9 +110,8 @@ pub(crate) fn values(
         Some(Outline::Polygon(corners)) => corners.clone(),
         _ => Vec::new(),
     };
-    // A polygon of more corners than fit is answered by samples.
-    let has_area = frame.outline.is_some() && corners.len() <= MOST_CORNERS;
-    let record = frame_record(&frame, settings.samples, if has_area { corners.len() } else { 0 });
+    let answers = area_answers(request, settings);
+    let record = frame_record(&frame, settings.samples, if answers { corners.len() } else { 0 });
     values.insert("light frame".into(), bytemuck::bytes_of(&record).to_vec());
     let padded = |points: &[[f32; 2]], length: usize| -> Vec<u8> {
         let mut rows: Vec<[f32; 4]> = points.iter().take(length).map(|p| [p[0], p[1], 0.0, 0.0]).collect();
@@ -118,26 +119,44 @@ pub(crate) fn values(
         bytemuck::cast_slice(&rows).to_vec()
     };
     values.insert("light outline".into(), padded(&corners, MOST_CORNERS));
-    let samples = LightSamples::new(light, local, set.pattern, set.count, set.seed)?;
-    values.insert("frame samples".into(), padded(&frame.samples(light, &samples), MOST_SAMPLES as usize));
+    let samples = frame.samples(light, &LightSamples::new(light, local, set.pattern, set.count, set.seed)?);
+    values.insert("frame samples".into(), padded(&samples, MOST_SAMPLES as usize));
 
     let (tile_count, receiver_count) = (tiles(request), request.block.count as u32);
     let edge_count = request.occluders.map_or(0, |o| o.edge_count);
     let range = ClusterRange { edge_count, cluster_count: edge_count.div_ceil(CLUSTER), tile_count, receiver_count };
     values.insert("cluster range".into(), bytemuck::bytes_of(&range).to_vec());
-    let fold = FoldSettings {
-        slot_count: receiver_count,
-        wants_area: u32::from(settings.exact_area && has_area && request.channels == 1),
-        // Areas are checked against the first 64 samples, which one invocation holds.
-        sampling_bound: SAMPLING_BOUND * (settings.samples.min(64) as f32).powf(-0.75),
-        tile_count,
-    };
-    values.insert("fold settings".into(), bytemuck::bytes_of(&fold).to_vec());
+    for (group, samples) in (0..).zip(samples.chunks(GROUP as usize)) {
+        let fold = FoldSettings {
+            slot_count: receiver_count,
+            group,
+            sampling_bound: SAMPLING_BOUND * (samples.len() as f32).powf(-0.75),
+            tile_count,
+        };
+        values.insert(format!("fold settings {group}"), bytemuck::bytes_of(&fold).to_vec());
+        values.insert(format!("group samples {group}"), padded(samples, GROUP as usize));
+    }
     let scale = AttenuationScale::of(settings.attenuation);
     values.insert("attenuation scale".into(), bytemuck::bytes_of(&scale).to_vec());
     values.insert("receiver order".into(), bytemuck::cast_slice(&order(request)).to_vec());
     shading::values(request, settings.passes, &mut values);
     Ok(values)
+}
+
+/// Whether the visible area answers: it is asked for, it is what visibility is a share of, and its outline fits. A texture's light is in its
+/// samples, whatever light of the call it belongs to.
+pub(super) fn area_answers(request: &Request<'_>, settings: &DepthComplexity) -> bool {
+    let fits = match light_outline(request) {
+        Some(Outline::Polygon(corners)) => corners.len() <= MOST_CORNERS,
+        Some(Outline::Disc(_)) => true,
+        None => false,
+    };
+    settings.exact_area && fits && request.channels == 1
+}
+
+/// The outline of the light, where visibility is a share of its area.
+pub(super) fn light_outline(request: &Request<'_>) -> Option<Outline> {
+    LightFrame::new(request.light, &request.scene.local.frame).outline
 }
 
 fn frame_record(frame: &LightFrame, sample_count: u32, corners: usize) -> FrameRecord {

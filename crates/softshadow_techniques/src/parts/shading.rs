@@ -11,7 +11,8 @@ use crate::request::{ReceiverSource, Request};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shading {
-    /// Every light sample with its own visibility (Forest et al., equation 6). Techniques without samples are modulated.
+    /// Every light sample with its own visibility (Forest et al., equation 6); exact areas do not enter. Techniques without samples are
+    /// modulated.
     #[default]
     Integrated,
     /// The light without shadow, times the visibility (Forest et al., equation 3).

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use softshadow_plan::{Pass, Plan, Work};
 use softshadow_scene::occluders::LightBoundary;
 use softshadow_scene::{
     Camera, Light, LightFrame, LightShape, LocalScene, Material, Mesh, Outline, Points, Scene, SceneError, look_at,
@@ -54,12 +55,21 @@ fn a_light_is_told_by_kind_corners_and_whether_area_is_visibility() {
         let light = light(shape);
         let request = Request { light: &light, ..fixture.request(1, fixture.points()) };
         for (exact_area, channels) in [(true, 1), (false, 1), (true, 3)] {
-            let (_, values) = stage(&technique(64, exact_area), &Request { channels, ..request });
+            let (plan, values) = stage(&technique(65, exact_area), &Request { channels, ..request });
             let frame = words(&values["light frame"]);
-            assert_eq!((frame[3], frame[15], frame[19]), (kind, corners, 64), "{:?}", light.shape());
-            let fold = words(&values["fold settings"]);
-            let wants_area = u32::from(exact_area && has_area && channels == 1);
-            assert_eq!((fold[0], fold[1], fold[3]), (5, wants_area, 1), "{:?}", light.shape());
+            let by_area = exact_area && has_area && channels == 1;
+            let corners = if by_area { corners } else { 0 };
+            assert_eq!((frame[3], frame[15], frame[19]), (kind, corners, 65), "{:?}", light.shape());
+            let fold = [0, 1].map(|group| words(&values[&format!("fold settings {group}")]));
+            assert_eq!(fold.map(|fold| [fold[0], fold[1], fold[3]]), [[5, 0, 1], [5, 1, 1]], "{:?}", light.shape());
+            // The first 64 samples come with the area, and in a kernel for the outline.
+            let with_area = match light.shape() {
+                LightShape::Rectangle { .. } => "fold_quadrangle",
+                LightShape::Polygon { .. } => "fold_polygon",
+                _ => "fold_disc",
+            };
+            let without = if kind == 1 { "fold_moving" } else { "fold" };
+            assert_eq!(folds(&plan), [if by_area { with_area } else { without }, without], "{:?}", light.shape());
             let outline = floats(&values["light outline"]);
             let expected = match LightFrame::new(&light, &fixture.scenes[1].local.frame).outline {
                 Some(Outline::Polygon(corners)) => corners,
@@ -113,11 +123,25 @@ fn samples_fill_their_place_and_no_more() {
         let sampling = words(&values["sampling"]);
         assert_eq!(sampling, [samples, samples.div_ceil(32), samples, 0, 1, 0, 0, 0]);
         assert_eq!(words(&values["light frame"])[19], samples);
-        bounds.push(f32::from_bits(words(&values["fold settings"])[2]));
+        bounds.push(f32::from_bits(words(&values["fold settings 0"])[2]));
+        // Folds have 64 of them each.
+        let groups: Vec<f32> =
+            (0..samples.div_ceil(64)).flat_map(|group| floats(&values[&format!("group samples {group}")])).collect();
+        assert_eq!(groups[..4 * samples as usize], rows[..4 * samples as usize]);
+        assert!(groups[4 * samples as usize..].iter().all(|x| *x == 0.0) && groups.len().is_multiple_of(256));
     }
     // An area may differ from the samples that are folded with it by less, the more of them there are.
     assert!(bounds[..4].is_sorted_by(|a, b| a > b), "{bounds:?}");
     assert_eq!((bounds[0], bounds[1]), (2.0, 0.25));
+}
+
+/// Entry points of the folds of a plan.
+fn folds(plan: &Plan) -> Vec<&'static str> {
+    let entry = |pass: &Pass| match pass.work {
+        Work::Compute { kernel, .. } if pass.label.starts_with("fold edges") => Some(kernel.entry),
+        _ => None,
+    };
+    plan.passes.iter().filter_map(entry).collect()
 }
 
 /// The order in which receivers of a block are taken.
@@ -151,6 +175,11 @@ fn pixels_are_taken_in_squares_each_once() {
     for (tile, pixels) in order(&fixture, ReceiverSource::Camera(&camera), block).chunks_exact(64).enumerate() {
         let places: BTreeSet<_> = pixels.iter().map(|p| ((p % 24 / 8) as usize, (p / 24 / 8) as usize)).collect();
         assert_eq!(places, BTreeSet::from([(tile % 3, tile / 3)]));
+        // And a bundle lies in a block of four by two.
+        for bundle in pixels.chunks_exact(8) {
+            let places: BTreeSet<_> = bundle.iter().map(|p| (p % 24 / 4, p / 24 / 2)).collect();
+            assert_eq!(places.len(), 1, "{bundle:?}");
+        }
     }
     assert_eq!(misplaced(&[0, 2, 1]), None);
     assert_eq!(misplaced(&[0, 2, 2]), Some(2));

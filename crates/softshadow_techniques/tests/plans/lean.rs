@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use softshadow_plan::{Over, Plan, VertexSource, Work};
+use softshadow_plan::{Origin, Over, Plan, VertexSource, Work};
 use softshadow_scene::Camera;
 use softshadow_techniques::{
     DepthComplexity, HardShadowMap, RayTraced, ReceiverSource, Request, Shading, Technique, Wants,
@@ -28,12 +28,14 @@ const FOLDED: &[&str] = &[
     "no counts",
     "bound tiles",
     "find faces",
+    "list faces",
     "count reference depth",
     "find silhouettes",
     "bound clusters",
     "cull edges",
     "size fold",
-    "fold edges",
+    "narrow edges",
+    "fold edges 0",
     "report counts",
 ];
 
@@ -96,7 +98,8 @@ fn the_plainest_depth_complexity_request_folds_and_shades_nothing() {
     let plan = silhouettes(true).plan(&request);
     let (first, last) = (["place points", "open masks"], ["resolve"]);
     let without_clear = |plan: &Plan| -> Vec<String> {
-        labels(plan).into_iter().filter(|l| *l != "all samples decided").map(str::to_owned).collect()
+        let clears = ["all samples decided", "no areas"];
+        labels(plan).into_iter().filter(|l| !clears.contains(l)).map(str::to_owned).collect()
     };
     assert_eq!(without_clear(&plan), [&first, FOLDED, &last].concat());
     assert_eq!(outputs(&plan), ["list counts", "visibility", "receivers"]);
@@ -105,6 +108,7 @@ fn the_plainest_depth_complexity_request_folds_and_shades_nothing() {
         assert_eq!(plan.find(label), None, "{label}");
     }
     assert_eq!(rasters(&plan), 0);
+    assert_eq!(plan.find("light outline").is_some(), plan.find("visible areas").is_some());
     // Silhouettes are the whole scene's: sub-scenes are no concern of theirs.
     let two = silhouettes(true).plan(&fixture.request(2, fixture.points()));
     assert_eq!((labels(&two), two.memory()), (labels(&plan), plan.memory()));
@@ -127,16 +131,12 @@ fn without_triangles_no_edge_is_looked_for() {
                 let plan = silhouettes(exact_area).plan(&fixture.request_for(scene, receivers, light));
                 let found: Vec<&str> = labels(&plan).into_iter().filter(|label| FOLDED.contains(label)).collect();
                 assert_eq!(found, if folds { FOLDED } else { &[] }, "{plan}");
-                for label in [
-                    "faces",
-                    "edges",
-                    "faces at edges",
-                    "clusters",
-                    "groups of clusters",
-                    "edge lists",
-                    "visible areas",
-                ] {
+                for label in ["faces", "edges", "faces at edges", "clusters", "groups of clusters", "edge lists"] {
                     assert_eq!(plan.find(label).is_some(), folds, "{label}");
+                }
+                // The fourth light is one whose area is no visibility.
+                for label in ["visible areas", "light outline"] {
+                    assert_eq!(plan.find(label).is_some(), folds && exact_area && light != 3, "{label}");
                 }
                 // Masks open with the horizon in any scene, and results leave.
                 assert!(labels(&plan).contains(&"open masks"));
@@ -180,23 +180,38 @@ fn what_edges_pass_on_is_written_before_it_is_read() {
     for (passes, name, label) in [
         (&["bound clusters", "cull edges"][..], "clusters", "clusters"),
         (&["bound clusters", "cull edges"], "groups_of_clusters", "groups of clusters"),
-        (&["bound tiles", "find faces", "count reference depth", "cull edges"], "parts", "tile parts"),
-        (&["cull edges", "fold edges"], "lists", "edge lists"),
-        (&["count reference depth", "cull edges", "size fold", "fold edges"], "counts", "running counts"),
-        (&["open masks", "bound tiles", "count reference depth", "fold edges"], "slots", "slots"),
-        (&["open masks", "count reference depth", "fold edges", "resolve"], "blocked", "blocked samples"),
-        (&["bound tiles", "fold edges", "resolve"], "areas", "visible areas"),
+        (&["bound tiles", "find faces", "list faces", "cull edges"], "parts", "tile parts"),
+        (&["list faces", "count reference depth"], "first_faces", "first faces"),
+        (&["list faces", "count reference depth", "cull edges", "narrow edges", "fold edges 0"], "lists", "edge lists"),
+        (
+            &["list faces", "count reference depth", "cull edges", "size fold", "narrow edges", "fold edges 0"],
+            "counts",
+            "running counts",
+        ),
+        (
+            &["open masks", "bound tiles", "list faces", "count reference depth", "narrow edges", "fold edges 0"],
+            "slots",
+            "slots",
+        ),
+        (&["open masks", "count reference depth", "fold edges 0", "resolve"], "blocked", "blocked samples"),
+        (&["fold edges 0", "resolve"], "areas", "visible areas"),
     ] {
         let places = passes.iter().map(|pass| labels(&plan).iter().position(|l| l == pass).unwrap());
         assert!(places.is_sorted(), "{passes:?}");
         passes.iter().for_each(|pass| assert_eq!(bound(&plan, pass, name), label, "{pass}"));
     }
     let work = |label: &str| &plan.passes.iter().find(|p| p.label == label).unwrap().work;
-    let Work::Compute { over: Over::Indirect(groups), .. } = work("fold edges") else {
-        panic!("'fold edges' runs over what was counted")
-    };
-    assert_eq!(plan.resources[groups.index()].label, "fold dispatch");
-    assert_eq!(bound(&plan, "size fold", "dispatch_size"), "fold dispatch");
+    for (pass, size, name) in
+        [("fold edges 0", "fold dispatch", "dispatch_size"), ("narrow edges", "narrow dispatch", "narrow_size")]
+    {
+        let Work::Compute { over: Over::Indirect(groups), .. } = work(pass) else {
+            panic!("'{pass}' runs over what was counted")
+        };
+        assert_eq!(plan.resources[groups.index()].label, size);
+        assert_eq!(bound(&plan, "size fold", name), size);
+    }
+    let Work::Clear { target } = work("no areas") else { panic!("'no areas' clears") };
+    assert_eq!(plan.resources[target.index()].label, "visible areas");
     let Work::Clear { target } = work("no counts") else { panic!("'no counts' clears") };
     assert_eq!(plan.resources[target.index()].label, "running counts");
     let Work::Copy { source, target, bytes } = work("report counts") else { panic!("it copies") };
@@ -208,9 +223,14 @@ fn what_edges_pass_on_is_written_before_it_is_read() {
 fn lights_that_the_whole_scene_is_before_share_its_occluders() {
     let fixture = Fixture::new();
     let plan = |light| silhouettes(true).plan(&fixture.request_for(1, fixture.points(), light));
-    // A rectangle, a sphere and a sun above the scene; the rectangle within it has its own.
-    assert_eq!((plan(0), plan(0)), (plan(2), plan(3)));
-    assert_ne!(plan(0), plan(1));
+    // A rectangle, a sphere and a sun above the scene: what differs is how samples and areas are taken.
+    let uploads = |light| {
+        let plan = plan(light);
+        plan.resources.into_iter().filter(|r| matches!(r.origin, Origin::Uploaded(_))).collect::<Vec<_>>()
+    };
+    assert_eq!((uploads(0), uploads(0)), (uploads(2), uploads(3)));
+    // The rectangle within it has its own.
+    assert_ne!(uploads(0), uploads(1));
     let faces = |light: usize| fixture.occluders[1][light].faces.key;
     assert_eq!([2, 3, 4].map(faces), [faces(0); 3]);
     assert_ne!(faces(0), faces(1));
@@ -528,7 +548,7 @@ fn passes_of_one_light_differ_in_their_values_alone() {
         ),
         (
             Technique::DepthComplexity(DepthComplexity { passes: 3, ..DepthComplexity::default() }),
-            &["frame samples", "light", "light samples", "sampling"],
+            &["frame samples", "group samples 0", "light", "light samples", "sampling"],
         ),
     ] {
         let values = |pass| technique.values(&request, &fixture.lights[0], pass).unwrap();

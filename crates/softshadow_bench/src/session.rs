@@ -1,0 +1,168 @@
+//! One run of the benchmark: scene by scene, said as soon as it is known.
+
+use std::fs::File;
+use std::io::Write;
+
+use serde::Serialize;
+use softshadow::Context;
+
+use crate::Arguments;
+use crate::case::Case;
+use crate::error::BenchError;
+use crate::measure::{Failure, take_turns};
+use crate::ratios::{self, MeasuredRatio};
+use crate::reference;
+use crate::report::{self, Environment, Place, Row};
+use crate::scenes::{self, Measured};
+
+/// Measured where neither cases nor ratios are asked for.
+const DEFAULT_CASES: [&str; 5] = [
+    "hard_shadow_map",
+    "ray_traced:samples=64",
+    "depth_complexity:samples=16",
+    "depth_complexity:samples=64",
+    "depth_complexity:samples=256",
+];
+
+pub(crate) struct Session<'a> {
+    arguments: &'a Arguments,
+    out: &'a mut dyn Write,
+    json: Option<File>,
+    context: Context,
+    environment: Environment,
+    cases: Vec<Case>,
+    skipped: usize,
+    failed: usize,
+}
+
+/// A line of JSON about a ratio.
+#[derive(Serialize)]
+struct RatioLine<'a> {
+    kind: &'static str,
+    scene: &'a str,
+    size: [u32; 2],
+    #[serde(flatten)]
+    ratio: &'a MeasuredRatio,
+    environment: &'a Environment,
+}
+
+/// A line of JSON about what was not measured.
+#[derive(Serialize)]
+struct AbsentLine<'a> {
+    kind: &'static str,
+    scene: &'a str,
+    size: [u32; 2],
+    case: Option<&'a str>,
+    reason: String,
+}
+
+impl<'a> Session<'a> {
+    pub(crate) fn new(arguments: &'a Arguments, out: &'a mut dyn Write) -> Result<Self, BenchError> {
+        let mut cases = Vec::new();
+        arguments.cases.iter().for_each(|case| ratios::add_case(&mut cases, case.clone()));
+        if arguments.ratios {
+            ratios::cases()?.into_iter().for_each(|case| ratios::add_case(&mut cases, case));
+        }
+        if cases.is_empty() {
+            cases = DEFAULT_CASES.iter().map(|text| text.parse()).collect::<Result<_, _>>()?;
+        }
+        let json = match &arguments.json {
+            Some(path) => {
+                Some(File::create(path).map_err(|error| BenchError::file(path.display().to_string(), error))?)
+            }
+            None => None,
+        };
+        let context = Context::new(&arguments.device)?;
+        let environment = Environment::of(context.adapter());
+        Ok(Self { arguments, out, json, context, environment, cases, skipped: 0, failed: 0 })
+    }
+
+    /// Measures everything; returns how many cases failed.
+    pub(crate) fn run(mut self) -> Result<usize, BenchError> {
+        let line = self.environment.line();
+        self.say(&line)?;
+        let meshes = scenes::meshes_folder();
+        for name in &self.arguments.scenes {
+            for &size in &self.arguments.sizes {
+                match scenes::find(name, size, &meshes) {
+                    Ok(measured) => self.measure(&measured)?,
+                    Err(missing @ BenchError::MissingMesh { .. }) => {
+                        self.skipped += 1;
+                        self.absent("skip", name, size, None, &missing)?;
+                    }
+                    Err(error) => return Err(error),
+                }
+            }
+        }
+        let (skipped, failed) = (self.skipped, self.failed);
+        self.say(&format!("\n{skipped} scenes skipped, {failed} cases failed"))?;
+        Ok(failed)
+    }
+
+    fn measure(&mut self, measured: &Measured) -> Result<(), BenchError> {
+        let [width, height] = measured.camera.size();
+        let (name, triangles) = (&measured.name, measured.scene.triangle_count());
+        self.say(&format!("\n{name}, {width} × {height}, {triangles} triangles"))?;
+        let technique = &self.arguments.reference;
+        let reference = reference::make(&self.context, measured, technique, self.arguments.reference_cache.as_deref())?;
+        let standard_error = reference.rms_standard_error.map_or("unknown".into(), |e| format!("{e:.5}"));
+        let samples = u64::from(technique.samples()) * u64::from(technique.passes());
+        self.say(&format!("reference: {} with {samples} samples, standard error {standard_error}", technique.name()))?;
+        let (measurements, failures) =
+            take_turns(&self.context, measured, &reference, &self.cases, self.arguments.repeats);
+        let environment = self.environment.clone();
+        let place = Place {
+            scene: &measured.name,
+            size: measured.camera.size(),
+            reference: technique,
+            reference_standard_error: reference.rms_standard_error,
+            environment: &environment,
+        };
+        for measurement in &measurements {
+            self.record(&Row::of(place, measurement))?;
+        }
+        self.say(&format!("\n{}", report::summary(&measurements)))?;
+        if self.arguments.ratios {
+            self.say_ratios(place, &ratios::of(&measurements)?)?;
+        }
+        self.say(&format!("{}\n{}", report::passes(&measurements), report::bytes(&measurements)))?;
+        for Failure { case, error } in &failures {
+            self.failed += 1;
+            self.absent("failure", name, place.size, Some(&case.text), error)?;
+        }
+        Ok(())
+    }
+
+    fn say_ratios(&mut self, place: Place<'_>, ratios: &[MeasuredRatio]) -> Result<(), BenchError> {
+        let Place { scene, size, environment, .. } = place;
+        for ratio in ratios {
+            self.record(&RatioLine { kind: "ratio", scene, size, ratio, environment })?;
+        }
+        self.say(&ratios::table(ratios).to_string())
+    }
+
+    /// Names what was not measured, and why.
+    fn absent(
+        &mut self,
+        kind: &'static str,
+        scene: &str,
+        size: [u32; 2],
+        case: Option<&str>,
+        error: &BenchError,
+    ) -> Result<(), BenchError> {
+        let reason = error.to_string();
+        let what = case.map_or_else(String::new, |case| format!(", {case}"));
+        self.say(&format!("{kind}: {scene}{what}: {reason}"))?;
+        self.record(&AbsentLine { kind, scene, size, case, reason })
+    }
+
+    fn say(&mut self, text: &str) -> Result<(), BenchError> {
+        writeln!(self.out, "{text}").and_then(|()| self.out.flush()).map_err(|e| BenchError::file("output", e))
+    }
+
+    fn record(&mut self, line: &impl Serialize) -> Result<(), BenchError> {
+        let Some(file) = &mut self.json else { return Ok(()) };
+        let text = serde_json::to_string(line).map_err(|error| BenchError::file("a line of JSON", error))?;
+        writeln!(file, "{text}").map_err(|error| BenchError::file("JSON lines", error))
+    }
+}
