@@ -182,5 +182,8 @@ def light_points(
     pattern: str,
     count: int,
     seed: int,
+    spread: str,
+    tile: int,
     receivers: NDArray[np.float64],
+    image_width: int,
 ) -> _LightPointArrays: ...

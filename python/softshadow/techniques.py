@@ -59,6 +59,14 @@ class RayTraced(Technique):
         Sets of samples that are averaged, each with a seed of its own.
     probes : int
         Samples that are traced first; all others follow only where the neighbourhood disagrees. 0 traces all.
+    spread : {"correlated", "decorrelated", "interleaved"}
+        Who shares samples. Correlated: all receivers have one set, and penumbrae show its steps. Decorrelated: every
+        receiver takes one of many stratified sets, and steps become noise. Interleaved, for cameras: the pixels of a
+        square have sets that together are one stratified set, and pixels side by side are averaged where they see one
+        surface; less noise for the same samples, and shadows blurred by half of `tile`, of which
+        the standard error knows nothing.
+    tile : int
+        Side of that square, 2 to 8.
 
     Raises
     ------
@@ -72,6 +80,8 @@ class RayTraced(Technique):
     seed: int = _RAY_TRACED["seed"]
     passes: int = _RAY_TRACED["passes"]
     probes: int = _RAY_TRACED["probes"]
+    spread: str = _RAY_TRACED["spread"]
+    tile: int = _RAY_TRACED["tile"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,16 +124,32 @@ class DepthComplexity(Technique):
     passes : int
         Sets of samples that are averaged, each with a seed of its own.
     exact_area : bool
-        Whether the light's visible area answers where the samples show a single layer; never in scenes in which
-        something semi-opaque hides the light.
+        Whether the light's visible area answers where the samples show a single layer; never where something semi-opaque
+        hides the light. With evaluation "blended" samples alone answer, and the result's `info["notes"]` say so.
+    spread, tile
+        As in :class:`RayTraced`, and with the same samples; interleaved, at most 8192 in all sets together. Evaluation
+        "blended" knows "correlated" alone.
     attenuation : {"logarithmic", "sum"}
         How several semi-opaque layers add up: ``"logarithmic"`` is right for any number of them, the product of what
-        passes each. ``"sum"`` adds opacities, as the paper does: right for one layer, too dark for more.
+        passes each. ``"sum"`` adds opacities, as the paper does: right for one layer, too dark for more. Tiled only.
+    evaluation : {"tiled", "blended"}
+        How edges find their receivers: listed for tiles of them, for points and cameras; or drawn over a camera's image
+        as penumbra wedges, as published, in scenes without semi-opaque triangles. The samples are the same.
+    initial_counts : {"rays", "z_fail"}
+        Blended only: how layers over the light's reference point are counted: by a ray a receiver, or by shadow volumes
+        as published, which is wrong for a few receivers next to edges, and not for sphere lights.
+    counters : {"words", "float"}
+        Blended only: where samples are counted: in 32-bit words, or in float32 colour targets as published, which not
+        every device can blend.
+    base : {8, 16, 64, 256}
+        Blended only: the smallest base of a counter's digit. Larger ones are taken where counts ask for them.
+    batches : {1, 2}
+        Blended only: whether changes are counted as they come, or all that add before all that take away.
 
     Raises
     ------
     SettingsError
-        For a setting outside its range.
+        For a setting outside its range, and for receivers or devices that an evaluation does not serve.
     """
 
     name: ClassVar[str] = "depth_complexity"
@@ -132,7 +158,14 @@ class DepthComplexity(Technique):
     seed: int = _DEPTH_COMPLEXITY["seed"]
     passes: int = _DEPTH_COMPLEXITY["passes"]
     exact_area: bool = _DEPTH_COMPLEXITY["exact_area"]
+    spread: str = _DEPTH_COMPLEXITY["spread"]
+    tile: int = _DEPTH_COMPLEXITY["tile"]
     attenuation: str = _DEPTH_COMPLEXITY["attenuation"]
+    evaluation: str = _DEPTH_COMPLEXITY["evaluation"]
+    initial_counts: str = _DEPTH_COMPLEXITY["initial_counts"]
+    counters: str = _DEPTH_COMPLEXITY["counters"]
+    base: int = _DEPTH_COMPLEXITY["base"]
+    batches: int = _DEPTH_COMPLEXITY["batches"]
 
 
 TECHNIQUES: dict[str, type[Technique]] = {kind.name: kind for kind in (RayTraced, HardShadowMap, DepthComplexity)}

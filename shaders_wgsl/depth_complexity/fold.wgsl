@@ -9,6 +9,7 @@
 //#import depth_complexity/area.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/walk.wgsl
+//#import depth_complexity/sample_sets.wgsl
 
 @group(0) @binding(0) var<uniform> light_frame: LightFrame;
 @group(0) @binding(1) var<uniform> group_samples: GroupSamples;
@@ -22,9 +23,11 @@
 @group(0) @binding(9) var<storage, read> lists: array<u32>;
 @group(0) @binding(11) var<storage, read_write> counts: ListCounts;
 @group(0) @binding(10) var<storage, read_write> areas: array<u32>;
-@group(0) @binding(12) var<uniform> attenuation_scale: AttenuationScale;
-@group(0) @binding(13) var<storage, read> triangle_attenuation: array<u32>;
-@group(0) @binding(14) var<storage, read_write> sample_transmittance: array<f32>;
+@group(0) @binding(12) var<uniform> sampling: Sampling;
+@group(0) @binding(13) var<uniform> sample_sets: SampleSets;
+@group(0) @binding(14) var<uniform> attenuation_scale: AttenuationScale;
+@group(0) @binding(15) var<storage, read> triangle_attenuation: array<u32>;
+@group(0) @binding(16) var<storage, read_write> sample_transmittance: array<f32>;
 
 struct GroupSamples {
     at: array<vec4<f32>, 64>,
@@ -289,23 +292,53 @@ fn fold_standing(before: Sums, view: FrameView, at: u32, changes: Changes) -> Su
     return sums;
 }
 
-fn fold_moving_samples(before: Sums, view: FrameView, at: u32, changes: Changes, count: u32) -> Sums {
+// Samples that a receiver has for itself: those of its own set, or a sphere's, which move with it. In eights: drivers on the CPU count
+// steps.
+fn own_sample(view: FrameView, at: u32) -> vec2<f32> {
+    return placed_sample(light_frame, view, of_pair(sample_sets.pairs[at >> 1u], at));
+}
+
+fn first_own_sample(fold: Fold) -> u32 {
+    return first_sample(sampling, fold.slot.receiver) + 64u * fold_settings.group;
+}
+
+fn crossed_own(c: Crossing, view: FrameView, first: u32, last: u32, k: u32) -> u32 {
+    return select(0u, 1u << (k & 31u), crosses(c, own_sample(view, min(first + k, last))));
+}
+
+fn crossed_own_samples(c: Crossing, view: FrameView, first: u32, count: u32) -> vec2<u32> {
+    let last = first + count - 1u;
+    var mask = vec2<u32>(0u);
+    for (var k = 0u; k < count; k += 8u) {
+        let found = crossed_own(c, view, first, last, k) | crossed_own(c, view, first, last, k + 1u)
+            | crossed_own(c, view, first, last, k + 2u) | crossed_own(c, view, first, last, k + 3u)
+            | crossed_own(c, view, first, last, k + 4u) | crossed_own(c, view, first, last, k + 5u)
+            | crossed_own(c, view, first, last, k + 6u) | crossed_own(c, view, first, last, k + 7u);
+        mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), k >= 32u);
+    }
+    return mask;
+}
+
+fn fold_own(before: Sums, view: FrameView, at: u32, changes: Changes, first: u32, count: u32) -> Sums {
     var sums = before;
     var waiting = changes.edges;
     while (waiting != 0u) {
         let k = firstTrailingBit(waiting);
         waiting &= waiting - 1u;
         let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + k])]));
-        let crossing = crossing_of(image);
-        var mask = vec2<u32>(0u);
-        for (var i = 0u; i < count; i++) {
-            let s = placed_sample(light_frame, view, group_samples.at[i].xy);
-            let found = select(0u, 1u << (i & 31u), crosses(crossing, s));
-            mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), i >= 32u);
-        }
-        sums = folded(sums, changes, k, image.left, mask);
+        sums = folded(sums, changes, k, image.left, crossed_own_samples(crossing_of(image), view, first, count));
     }
     return sums;
+}
+
+fn below_own(fold: Fold) -> vec2<u32> {
+    let first = first_own_sample(fold);
+    var mask = vec2<u32>(0u);
+    for (var k = 0u; k < select(fold.count, 0u, fold.is_above); k++) {
+        let found = select(0u, 1u << (k & 31u), is_below(fold.slope, own_sample(fold.view, first + k)));
+        mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), k >= 32u);
+    }
+    return mask;
 }
 
 // The sector and line of an edge, as areas take them.
@@ -334,10 +367,17 @@ fn beyond_side(b: Beyond, from_corner: u32, to_corner: u32) -> f32 {
     return area_beyond_side(b.line, b.from_direction, b.to_direction, corners[0], corners[1]);
 }
 
-// The area of a light of four corners beyond the edges of a chunk.
-fn area_in_quadrangle(view: FrameView, at: u32, changes: Changes) -> i32 {
+// The area of the light beyond the edges of a chunk: a loop for each kind of outline, skipped where it is another.
+fn area_in(view: FrameView, at: u32, changes: Changes) -> i32 {
+    let corners = light_frame.outline_count;
+    return area_in_quadrangle(view, at, changes, select(0u, changes.edges, corners == 4u))
+        + area_in_polygon(view, at, changes, select(0u, changes.edges, corners != 4u && corners != 0u))
+        + area_in_disc(view, at, changes, select(0u, changes.edges, corners == 0u));
+}
+
+fn area_in_quadrangle(view: FrameView, at: u32, changes: Changes, chosen: u32) -> i32 {
     var sum = 0;
-    var waiting = changes.edges;
+    var waiting = chosen;
     while (waiting != 0u) {
         let k = firstTrailingBit(waiting);
         waiting &= waiting - 1u;
@@ -349,9 +389,9 @@ fn area_in_quadrangle(view: FrameView, at: u32, changes: Changes) -> i32 {
     return sum;
 }
 
-fn area_in_polygon(view: FrameView, at: u32, changes: Changes) -> i32 {
+fn area_in_polygon(view: FrameView, at: u32, changes: Changes, chosen: u32) -> i32 {
     var sum = 0;
-    var waiting = changes.edges;
+    var waiting = chosen;
     while (waiting != 0u) {
         let k = firstTrailingBit(waiting);
         waiting &= waiting - 1u;
@@ -366,9 +406,9 @@ fn area_in_polygon(view: FrameView, at: u32, changes: Changes) -> i32 {
     return sum;
 }
 
-fn area_in_disc(view: FrameView, at: u32, changes: Changes) -> i32 {
+fn area_in_disc(view: FrameView, at: u32, changes: Changes, chosen: u32) -> i32 {
     var sum = 0;
-    var waiting = changes.edges;
+    var waiting = chosen;
     while (waiting != 0u) {
         let k = firstTrailingBit(waiting);
         waiting &= waiting - 1u;
@@ -381,8 +421,8 @@ fn area_in_disc(view: FrameView, at: u32, changes: Changes) -> i32 {
 }
 
 // Samples and area of one receiver are summed: the area answers where it can, and no part of the light lies below the horizon.
-fn finish_area(fold: Fold, area: i32) {
-    let layered = finish(fold, below_standing(fold));
+fn finish_area(fold: Fold, area: i32, below: vec2<u32>) {
+    let layered = finish(fold, below);
     let sampled = 1.0 - f32(countOneBits(layered.x) + countOneBits(layered.y)) / f32(fold.count);
     let visible = visible_area(fold.sums, area, fold.slot.depth, layered, sampled);
     if (fold.is_above && visible >= 0.0) {
@@ -396,6 +436,7 @@ fn steps_in(at: u32, changes: Changes, inner: u32) -> u32 {
     return 4u * lists[at + 1u] + countOneBits(changes.edges) * (4u + inner);
 }
 
+// All receivers share samples that stand still.
 @compute @workgroup_size(64)
 fn fold(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -417,40 +458,8 @@ fn fold(
     finish(fold, below_standing(fold));
 }
 
-fn below_moving(fold: Fold) -> vec2<u32> {
-    var below = vec2<u32>(0u);
-    for (var k = 0u; k < select(fold.count, 0u, fold.is_above); k++) {
-        let s = placed_sample(light_frame, fold.view, group_samples.at[k].xy);
-        let found = select(0u, 1u << (k & 31u), is_below(fold.slope, s));
-        below |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), k >= 32u);
-    }
-    return below;
-}
-
-// A sphere's samples move with the receiver.
 @compute @workgroup_size(64)
-fn fold_moving(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let task = task_of(workgroup, workgroups, lane);
-    if (!task.exists) {
-        return;
-    }
-    var fold = begin(task);
-    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
-        let at = chunk_at(fold.chunk);
-        let changes = changes_in(fold.view, fold.receiver.triangle, at);
-        fold.sums = fold_moving_samples(fold.sums, fold.view, at, changes, fold.count);
-        fold.steps += steps_in(at, changes, fold.count);
-        fold.chunk = lists[at];
-    }
-    finish(fold, below_moving(fold));
-}
-
-@compute @workgroup_size(64)
-fn fold_quadrangle(
+fn fold_areas(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
@@ -465,38 +474,16 @@ fn fold_quadrangle(
         let at = chunk_at(fold.chunk);
         let changes = changes_in(fold.view, fold.receiver.triangle, at);
         fold.sums = fold_standing(fold.sums, fold.view, at, changes);
-        area += area_in_quadrangle(fold.view, at, changes);
-        fold.steps += steps_in(at, changes, 0u);
-        fold.chunk = lists[at];
-    }
-    finish_area(fold, area);
-}
-
-@compute @workgroup_size(64)
-fn fold_polygon(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let task = task_of(workgroup, workgroups, lane);
-    if (!task.exists) {
-        return;
-    }
-    var fold = begin(task);
-    var area = 0;
-    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
-        let at = chunk_at(fold.chunk);
-        let changes = changes_in(fold.view, fold.receiver.triangle, at);
-        fold.sums = fold_standing(fold.sums, fold.view, at, changes);
-        area += area_in_polygon(fold.view, at, changes);
+        area += area_in(fold.view, at, changes);
         fold.steps += steps_in(at, changes, light_frame.outline_count);
         fold.chunk = lists[at];
     }
-    finish_area(fold, area);
+    finish_area(fold, area, below_standing(fold));
 }
 
+// The same where receivers have samples of their own: other entries, because what is read at one place for all is faster.
 @compute @workgroup_size(64)
-fn fold_disc(
+fn fold_own_samples(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
@@ -506,16 +493,39 @@ fn fold_disc(
         return;
     }
     var fold = begin(task);
+    let first = first_own_sample(fold);
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        let changes = changes_in(fold.view, fold.receiver.triangle, at);
+        fold.sums = fold_own(fold.sums, fold.view, at, changes, first, fold.count);
+        fold.steps += steps_in(at, changes, fold.count / 8u);
+        fold.chunk = lists[at];
+    }
+    finish(fold, below_own(fold));
+}
+
+@compute @workgroup_size(64)
+fn fold_own_samples_areas(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
+    }
+    var fold = begin(task);
+    let first = first_own_sample(fold);
     var area = 0;
     while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
         let at = chunk_at(fold.chunk);
         let changes = changes_in(fold.view, fold.receiver.triangle, at);
-        fold.sums = fold_standing(fold.sums, fold.view, at, changes);
-        area += area_in_disc(fold.view, at, changes);
-        fold.steps += steps_in(at, changes, 0u);
+        fold.sums = fold_own(fold.sums, fold.view, at, changes, first, fold.count);
+        area += area_in(fold.view, at, changes);
+        fold.steps += steps_in(at, changes, fold.count / 8u + light_frame.outline_count);
         fold.chunk = lists[at];
     }
-    finish_area(fold, area);
+    finish_area(fold, area, below_own(fold));
 }
 
 // Layers, opaque and in units of attenuation.
@@ -620,7 +630,7 @@ fn fold_attenuated(
 }
 
 @compute @workgroup_size(64)
-fn fold_attenuated_moving(
+fn fold_attenuated_own_samples(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
@@ -630,6 +640,7 @@ fn fold_attenuated_moving(
         return;
     }
     var fold = begin(task);
+    let first = first_own_sample(fold);
     var sums = Attenuated(attenuation_at(fold.slot.attenuation), u32(abs(fold.slot.attenuation)));
     while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
         let at = chunk_at(fold.chunk);
@@ -640,18 +651,13 @@ fn fold_attenuated_moving(
             waiting &= waiting - 1u;
             let weight = weight_of_both(fold.view, edge, fold.receiver.triangle);
             let image = image_before(fold.view, edge);
-            let crossing = crossing_of(image);
-            var mask = vec2<u32>(0u);
-            for (var i = 0u; i < fold.count; i++) {
-                let found = select(0u, 1u << (i & 31u), crosses(crossing, placed_sample(light_frame, fold.view, group_samples.at[i].xy)));
-                mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), i >= 32u);
-            }
+            let mask = crossed_own_samples(crossing_of(image), fold.view, first, fold.count);
             let sign = select(1, -1, image.left);
             fold.sums = with_layers(fold.sums, weight.opaque * sign, mask);
             sums = attenuated_by(sums, weight.attenuation * sign, face_count(edge), mask);
-            fold.steps += 4u + face_count(edge) + fold.count;
+            fold.steps += 4u + face_count(edge) + fold.count / 8u;
         }
         fold.chunk = lists[at];
     }
-    finish_attenuated(fold, sums, below_moving(fold));
+    finish_attenuated(fold, sums, below_own(fold));
 }

@@ -27,11 +27,12 @@ fn begin(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let lowest = min(receiver.normal * ways.low, receiver.normal * ways.high);
     let magnitude = max(abs(ways.low), abs(ways.high));
     let all_above = dot(lowest, vec3<f32>(1.0)) > 4e-6 * dot(magnitude, vec3<f32>(1.0));
+    let first = first_sample(sampling, index);
     for (var word = 0u; word < sampling.words; word++) {
         var mask = select(0u, 0xffffffffu, hidden);
         let here = min(32u, sampling.count - 32u * word);
         for (var bit = 0u; bit < select(here, 0u, hidden || open || all_above); bit++) {
-            let way = light_way(light_sample(light, view, light_samples[32u * word + bit], receiver.position), receiver.position);
+            let way = light_way(light_sample(light, view, light_samples[first + 32u * word + bit], receiver.position), receiver.position);
             mask |= select(0u, 1u << bit, below_horizon(receiver, way));
         }
         blocked[index * sampling.words + word] = mask;

@@ -77,11 +77,12 @@ fn trace(
     let pad = vec3<f32>(box_pad(receiver.position));
     let walk = vec2<u32>(candidate.first_node, candidate.last_node);
     let unbounded = light.kind == LIGHT_SUN;
+    let own = first_sample(sampling, index);
     for (var sample = first; sample < end; sample++) {
         let word = index * sampling.words + sample / 32u;
         let bit = 1u << (sample % 32u);
         if ((atomicLoad(&blocked[word]) & bit) == 0u) {
-            let way = light_way(light_sample(light, view, light_samples[sample], receiver.position), receiver.position);
+            let way = light_way(light_sample(light, view, light_samples[own + sample], receiver.position), receiver.position);
             if (is_blocked(receiver, way, unbounded, walk, pad)) {
                 atomicOr(&blocked[word], bit);
             }
@@ -149,11 +150,12 @@ fn trace_attenuated(
     let pad = vec3<f32>(box_pad(receiver.position));
     let walk = vec2<u32>(candidate.first_node, candidate.last_node);
     let unbounded = light.kind == LIGHT_SUN;
+    let own = first_sample(sampling, index);
     for (var sample = first; sample < end; sample++) {
         let at = index * sampling.count + sample;
         let before = sample_transmittance[at];
         if (before > 0.0) {
-            let way = light_way(light_sample(light, view, light_samples[sample], receiver.position), receiver.position);
+            let way = light_way(light_sample(light, view, light_samples[own + sample], receiver.position), receiver.position);
             sample_transmittance[at] = before * passed_share(receiver, way, unbounded, walk, pad);
         }
     }

@@ -86,11 +86,12 @@ fn integrated(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let known = decided[index];
     // Where only probes were traced they agree, and speak for all samples.
     let all_dark = known < sampling.count && known > 0u && (blocked[index * sampling.words] & 1u) != 0u;
+    let first = first_sample(sampling, index);
     var sum = vec3<f32>(0.0);
     for (var sample = 0u; sample < select(sampling.count, 0u, all_dark); sample++) {
         let mask = blocked[index * sampling.words + sample / 32u];
         let hidden = (mask & (1u << (sample % 32u))) != 0u;
-        sum += select(sample_contribution(receiver, view, sample, material), vec3<f32>(0.0), hidden);
+        sum += select(sample_contribution(receiver, view, first + sample, material), vec3<f32>(0.0), hidden);
     }
     add_color(index, sum);
 }
@@ -113,11 +114,12 @@ fn integrated_attenuated(@builtin(global_invocation_id) invocation: vec3<u32>) {
     // Where only probes were traced they agree, and speak for all samples.
     let only_probes = known < sampling.count && known > 0u;
     let at = index * sampling.count;
+    let first = first_sample(sampling, index);
     var sum = vec3<f32>(0.0);
     for (var sample = 0u; sample < sampling.count; sample++) {
         let passes = sample_transmittance[at + select(sample, 0u, only_probes)];
         if (passes > 0.0) {
-            sum += sample_contribution(receiver, view, sample, material) * passes;
+            sum += sample_contribution(receiver, view, first + sample, material) * passes;
         }
     }
     add_color(index, sum);
@@ -136,6 +138,7 @@ fn modulated(@builtin(global_invocation_id) invocation: vec3<u32>) {
     }
     let material = materials[triangle_materials[receiver.triangle]];
     let view = light_view(light, receiver.position);
+    // Without shadow there is nothing to decorrelate: the first set serves all.
     var sum = vec3<f32>(0.0);
     for (var sample = 0u; sample < select(0u, sampling.count, view.exists); sample++) {
         sum += sample_contribution(receiver, view, sample, material);

@@ -28,6 +28,10 @@ def look(**settings):
     return ss.Camera.look_at(**{"eye": (1, 1, 1), "target": (0, 0, 0), "fov_y_deg": 40, "size": (4, 3)} | settings)
 
 
+def blended(**settings):
+    return ss.DepthComplexity(evaluation="blended", **settings)
+
+
 SCALED = np.diag([2.0, 2, 2, 1])
 MIRROR = np.diag([-1.0, 1, 1, 1])
 INF = float("inf")
@@ -156,6 +160,14 @@ NONSENSE = [
     (lambda: ss.DepthComplexity(samples=257), ss.SettingsError, "256"),
     (lambda: ss.DepthComplexity(passes=0), ss.SettingsError, "passes"),
     (lambda: ss.DepthComplexity(exact_area=1), ss.SettingsError, "exact_area.*True or False"),
+    (lambda: ss.DepthComplexity(evaluation="rasterised"), ss.SettingsError, "tiled.*blended"),
+    (lambda: ss.DepthComplexity(evaluation=2), ss.SettingsError, "evaluation"),
+    (lambda: ss.DepthComplexity(counters="float"), ss.SettingsError, "counters.*'blended' alone"),
+    (lambda: blended(counters="bytes"), ss.SettingsError, "words.*float"),
+    (lambda: blended(initial_counts="stencil"), ss.SettingsError, "rays.*z_fail"),
+    (lambda: blended(base=10), ss.SettingsError, "base.*8, 16, 64 or 256"),
+    (lambda: blended(batches=3), ss.SettingsError, "batches.*1 or 2"),
+    (lambda: visibility(SCENE, LIGHT, points=CARD, technique=blended()), ss.SettingsError, "knows no points.*'tiled'"),
     (lambda: ss.HardShadowMap(resolution=0), ss.SettingsError, "resolution"),
     (lambda: ss.HardShadowMap(resolution=2**31), ss.SettingsError, "resolution"),
     # calls
@@ -204,6 +216,22 @@ NONSENSE = [
     (lambda: ss.light_points(LIGHT, 0, scene=SCENE), ss.SettingsError, "samples"),
     (lambda: ss.light_points(LIGHT, 10**6, scene=SCENE), ss.SceneError, "samples"),
     (lambda: ss.light_points(LIGHT, 4, scene=SCENE, pattern="x"), ss.SettingsError, "pattern"),
+    (lambda: ss.light_points(LIGHT, 4, CARD, scene=SCENE, spread="x"), ss.SettingsError, "spread"),
+    (lambda: ss.light_points(LIGHT, 4, scene=SCENE, spread="decorrelated"), ss.SceneError, "receivers"),
+    (lambda: ss.light_points(LIGHT, 4, CARD, scene=SCENE, spread="interleaved"), ss.SettingsError, "image's pixels"),
+    (
+        lambda: ss.light_points(LIGHT, 4, CARD[None], scene=SCENE, spread="interleaved", tile=0),
+        ss.SceneError,
+        "samples",
+    ),
+    (lambda: ss.RayTraced(spread="mixed"), ss.SettingsError, "'mixed' is none of 'correlated'"),
+    (lambda: ss.RayTraced(tile=9), ss.SettingsError, "between 2 and 8, got 9"),
+    (lambda: ss.DepthComplexity(samples=256, spread="interleaved", tile=6), ss.SettingsError, "smaller tile"),
+    (
+        lambda: visibility(SCENE, LIGHT, points=CARD, technique=ss.RayTraced(spread="interleaved")),
+        ss.SettingsError,
+        "ray_traced spread: interleaved.*give a camera",
+    ),
     (
         lambda: ss.light_points(ss.SphereLight(radius=1, world_from_light=POSE), 4, scene=SCENE),
         ss.SceneError,

@@ -46,13 +46,13 @@ def test_options_mean_what_they_mean_in_python(tmp_path, mesh_file):
         *("visibility", mesh_file, "-o", out, *SMALL),
         *("--light", "rect:width=1,height=0.5,position=0/3/0,target=0/0/0"),
         *("--camera", "eye=3/4/3,target=0/0/0,fov=50"),
-        *("--technique", "ray-traced:samples=9,seed=5"),
+        *("--technique", "ray-traced:samples=9,seed=5,spread=interleaved,tile=2"),
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""
     light = ss.RectLight(width=1, height=0.5, world_from_light=ss.look_at((0, 3, 0), (0, 0, 0)))
     camera = ss.Camera.look_at(eye=(3, 4, 3), target=(0, 0, 0), fov_y_deg=50, size=(24, 16))
-    technique = ss.RayTraced(samples=9, seed=5)
+    technique = ss.RayTraced(samples=9, seed=5, spread="interleaved", tile=2)
     expected = visibility(ss.Scene.load(mesh_file), light, camera=camera, technique=technique).values
     np.testing.assert_array_equal(np.load(out), expected)
 
@@ -116,7 +116,11 @@ def test_several_lights_are_added_in_a_picture(tmp_path, mesh_file):
         (["render", "hall", "-o", "a.png", "--technique", "magic"], "hard-shadow-map"),
         (["render", "hall", "-o", "a.png", "--technique", "ray-traced:samples=0"], "32768"),
         (["render", "hall", "-o", "a.png", "--technique", "ray-traced:samples=x"], "whole number"),
+        (["render", "hall", "-o", "a.png", "--technique", "ray-traced:spread=wide"], "'wide' is none of"),
+        (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:spread=interleaved,tile=1"], "2 and 8"),
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:exact_area=maybe"], "true or false"),
+        (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:base=64"], "'blended' alone"),
+        (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:evaluation=blended,base=9"], "64 or 256"),
         (["render", "hall", "-o", "a.png", "--device", "toaster"], "toaster"),
         ([], "required"),
     ],

@@ -161,6 +161,47 @@ def test_visible_samples_are_those_of_light_points(scene):
             visibility(scene, light, camera=camera, technique=other, sample_masks=True)
 
 
+@pytest.mark.parametrize("spread", ["decorrelated", "interleaved"])
+def test_light_points_know_the_samples_of_every_pixel(scene, spread):
+    light, camera, settings = light_above(), camera_above((16, 12)), {"spread": spread, "tile": 3, "seed": 2}
+    masks = [
+        visibility(scene, light, camera=camera, technique=technique, sample_masks=True, receivers=True)
+        for technique in (ss.RayTraced(samples=40, **settings), ss.DepthComplexity(samples=40, **settings))
+    ]
+    result = masks[0]
+    np.testing.assert_array_equal(masks[1].visible_samples, result.visible_samples)
+    assert result.info["technique"]["spread"] == spread
+    origins = np.where(result.valid[..., None], result.positions, 9.0)
+    points = ss.light_points(light, 40, origins, scene=scene, **settings)
+    assert points.positions.shape == (12, 16, 40, 3)
+    assert points.parameters.shape == (12, 16, 40, 2)
+    assert not np.array_equal(points.parameters[4, 4], points.parameters[4, 5])
+    assert np.array_equal(points.parameters[4, 4], points.parameters[7, 7]) == (spread == "interleaved")
+    # The card lies at y = 1 and hides a sample where the ray crosses it.
+    on_floor = origins[..., None, 1] < 0.5
+    share = (1 - origins[..., None, 1]) / (points.positions[..., 1] - origins[..., None, 1])
+    across = origins[:, :, None] + (points.positions - origins[:, :, None]) * share[..., None]
+    inside = np.abs(across[..., [0, 2]]).max(axis=-1)
+    clear = np.abs(inside - 0.5) > 1e-4
+    assert ((inside > 0.5) == result.visible_samples)[on_floor & clear].all()
+    assert (~result.visible_samples & on_floor).sum() > 100
+    # Averages of neighbours are no shares of 40; a pixel's own samples are.
+    steps = result.values[result.valid] * 40
+    assert (np.abs(steps - steps.round()) > 1e-3).any() == (spread == "interleaved")
+
+
+def test_light_points_of_points_are_drawn_by_index(scene, floor_points):
+    sphere = ss.SphereLight(radius=0.5, world_from_light=POSE)
+    for light, apart in ((light_above(), False), (sphere, True)):
+        points = ss.light_points(light, 16, floor_points, scene=scene, spread="decorrelated")
+        assert points.positions.shape == (len(floor_points), 16, 3)
+        first = ss.light_points(light, 16, floor_points[:5], scene=scene, spread="decorrelated")
+        np.testing.assert_array_equal(points.positions[:5], first.positions)
+        one_set = ss.light_points(light, 16, floor_points, scene=scene)
+        assert one_set.parameters.shape == (16, 2)
+        assert one_set.positions.shape == ((len(floor_points), 16, 3) if apart else (16, 3))
+
+
 def test_silhouette_edges_see_the_samples_that_rays_see(scene):
     light, camera = light_above(), camera_above((32, 24))
     both = [
@@ -177,8 +218,27 @@ def test_silhouette_edges_see_the_samples_that_rays_see(scene):
     assert both[1].info["area_receivers"] == 0
     by_area = visibility(scene, light, camera=camera, technique=ss.DepthComplexity())
     assert by_area.info["area_receivers"] > 0
+    assert by_area.info["notes"] == []
     difference = np.abs(by_area.values - both[1].values)[by_area.valid]
     assert 0 < difference.max() < 0.1, "areas differ from samples by no more than samples from the truth"
+
+
+@pytest.mark.parametrize("settings", [{}, {"base": 64, "batches": 2}, {"initial_counts": "z_fail"}])
+def test_wedges_see_the_samples_that_tiles_see(scene, settings):
+    light, camera = light_above(), camera_above((32, 24))
+    drawn = ss.DepthComplexity(evaluation="blended", **settings)
+    assert drawn == ss.DepthComplexity(evaluation="blended", counters="words", **settings)
+    tiles, wedges = (
+        visibility(scene, light, camera=camera, technique=technique, sample_masks=True)
+        for technique in (ss.DepthComplexity(exact_area=False), drawn)
+    )
+    np.testing.assert_array_equal(tiles.visible_samples, wedges.visible_samples)
+    np.testing.assert_array_equal(tiles.values, wedges.values)
+    assert (~wedges.visible_samples).sum() > 100
+    assert wedges.info["silhouette_edges"] > 0
+    assert "list wedges" in wedges.info["plan"]
+    assert wedges.info["area_receivers"] == 0
+    assert any("exact_area" in note for note in wedges.info["notes"])
 
 
 def test_light_points_of_a_sphere_fill_its_disc_as_each_receiver_sees_it(scene, floor_points):

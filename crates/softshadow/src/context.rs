@@ -166,3 +166,32 @@ fn points_bounds(points: &[[f64; 3]]) -> Option<([f64; 3], [f64; 3])> {
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+#[cfg(test)]
+mod tests {
+    use softshadow_scene::{LightShape, LightTexture, Material, Mesh, look_at};
+
+    use super::*;
+
+    #[test]
+    fn another_frame_of_a_texture_rebuilds_nothing() {
+        let corners = vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+        let mesh = Mesh::new("leaf", corners, vec![[0, 1, 2]], Material::default()).unwrap();
+        let scene = Scene::new(vec![mesh]).unwrap();
+        let pose = look_at([0.0, 0.0, 0.5], [0.0, 0.4, 0.0], None).unwrap();
+        let light = Light::new(LightShape::Rectangle { width: 1.0, height: 1.0 }, pose).unwrap();
+        let frame =
+            |red: f32| light.clone().with_texture(LightTexture::new(1, 1, vec![[red, 0.0, 0.0]]).unwrap()).unwrap();
+        let context = Context::new(&DeviceChoice::Auto).unwrap();
+        let receivers = Receivers::Points(softshadow_scene::Points::new(vec![[0.0, 0.0, -1.0]], None).unwrap());
+        let contents = |scene| context.contents(scene, &receivers).unwrap();
+        let occluders = |light| context.occluders(&scene, &contents(&scene), &[light]).unwrap().remove(0);
+        let (scene_then, then) = (contents(&scene), occluders(frame(1.0)));
+        assert!(Arc::ptr_eq(&scene_then, &contents(&scene)));
+        assert!(Arc::ptr_eq(&then, &occluders(frame(0.5))));
+        // A light that has moved has other occluders.
+        let moved =
+            Light::new(light.shape().clone(), look_at([0.0, 0.0, 0.2], [0.0, 0.4, 0.0], None).unwrap()).unwrap();
+        assert!(!Arc::ptr_eq(&then, &occluders(moved)));
+    }
+}

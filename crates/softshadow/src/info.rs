@@ -4,6 +4,7 @@ use serde::Serialize;
 use softshadow_engine::{AdapterInfo, PassTime, RunReport};
 use softshadow_scene::{LocalScene, Scene};
 use softshadow_techniques::Technique;
+use softshadow_techniques::depth_complexity::Evaluation;
 
 /// Adapter, technique, cost, and how well the values are known.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -46,7 +47,7 @@ pub struct Info {
     pub unresolved_triangles: usize,
     /// Triangles of opacity 0, left out.
     pub invisible_triangles: usize,
-    /// What the scene's file holds that is not modelled, and what the technique does not.
+    /// What the scene's file holds that is not modelled, what the technique does not, and settings that the call could not follow.
     pub notes: Vec<String>,
     /// `statistical`: values have a standard error. `none`: nothing is known about their error.
     pub error_kind: &'static str,
@@ -65,10 +66,16 @@ impl Info {
     }
 }
 
-/// What a result does not model of its scene, in words.
+/// What a result does not model of its scene, and settings that a call cannot follow where it answers all the same, in words.
 pub(crate) fn notes(scene: &Scene, technique: &Technique, local: &LocalScene) -> Vec<String> {
     let semi_opaque = local.opacities.iter().filter(|opacity| **opacity < 1.0).count();
     let taken = (semi_opaque > 0 && matches!(technique, Technique::HardShadowMap(_)))
         .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: hard_shadow_map knows no others"));
-    scene.notes().iter().cloned().chain(taken).collect()
+    let by_samples = match technique {
+        Technique::DepthComplexity(settings) if settings.exact_area && settings.evaluation == Evaluation::Blended => {
+            Some("exact_area: evaluation 'blended' answers by samples alone".into())
+        }
+        _ => None,
+    };
+    scene.notes().iter().cloned().chain(taken).chain(by_samples).collect()
 }

@@ -34,9 +34,10 @@ pub use render::{Picture, PictureOptions, render};
 pub use softshadow_engine::{AdapterInfo, DeviceKind, PassTime, Timing};
 pub use softshadow_measure as measure;
 pub use softshadow_scene::{
-    Camera, Dropped, Light, LightShape, LightTexture, Material, Mesh, Points, Receivers, SamplePattern, Scene,
-    SceneError, UpAxis, look_at, procedural, scene_file,
+    Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, SamplePattern,
+    SampleSpread, Scene, SceneError, UpAxis, look_at, procedural, scene_file,
 };
+pub use softshadow_techniques::depth_complexity::{Counters, Evaluation, InitialCounts};
 pub use softshadow_techniques::{
     Attenuation, DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError,
 };

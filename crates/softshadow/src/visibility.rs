@@ -6,7 +6,9 @@ use softshadow_engine::{RunReport, StageReport, Timing};
 use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::depth_complexity::LIST_COUNTS;
+use softshadow_techniques::depth_complexity::blended::{LARGEST_COUNTS, Largest};
 use softshadow_techniques::parts::VISIBILITY;
+use softshadow_techniques::parts::interleaving::NOISY_BYTES;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
 use softshadow_techniques::parts::resolve::{BLOCKED, STANDARD_ERROR};
 use softshadow_techniques::parts::shading::COLOR;
@@ -132,11 +134,16 @@ pub(crate) fn run(
     on_progress: Progress<'_>,
 ) -> Result<(Visibility, Vec<[f32; 4]>), Error> {
     technique.check()?;
+    let source = match receivers {
+        Receivers::Camera(camera) => ReceiverSource::Camera(camera),
+        Receivers::Points(points) => ReceiverSource::Points(points),
+    };
     if lights.is_empty() {
         return Err(Error::Settings("at least one light is needed".into()));
     }
     let engine = context.engine()?;
     let host = engine.host();
+    technique.check_call(source, lights, &host)?;
     if let Receivers::Camera(camera) = receivers {
         let (needed, limit) = (u64::from(camera.size()[0].max(camera.size()[1])), u64::from(host.limits.texture_size));
         if needed > limit {
@@ -144,16 +151,13 @@ pub(crate) fn run(
         }
     }
     let contents = context.contents(scene, receivers)?;
+    technique.check_scene(&contents)?;
     let channels = if lights.iter().any(|l| l.texture().is_some()) { 3 } else { 1 };
     let mut collector = Collector::new(context, scene, lights, receivers, technique, options, &contents, channels);
     let sees_nothing = matches!(receivers, Receivers::Camera(_)) && contents.local.sub_scenes.is_empty();
     if receivers.count() == 0 || sees_nothing {
         return Ok(collector.finish(RunReport::default()));
     }
-    let source = match receivers {
-        Receivers::Camera(camera) => ReceiverSource::Camera(camera),
-        Receivers::Points(points) => ReceiverSource::Points(points),
-    };
     let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
     let most = receivers_per_block(technique, options, channels, picture.is_some(), &host, source.row(), &contents)?;
     let occluders = match technique.wants_occluders() {
@@ -175,7 +179,7 @@ pub(crate) fn run(
     };
     program.check()?;
     if let Some(task) = program.task(0) {
-        collector.result.info.plan = program.plan(task).explain();
+        collector.result.info.plan = program.plan(task, &[]).explain();
     }
     collector.result.info.blocks = program.blocks.len();
     let everything = contents.contents().chain(occluders.iter().flat_map(|o| o.contents()));
@@ -187,6 +191,13 @@ pub(crate) fn run(
             done += 1;
             if let Some(task) = program.task(stage.index) {
                 collector.add(program.blocks[task.block], task.light, &stage.outputs);
+            }
+            // The plan of a later stage follows from what the first one found.
+            if let (0, Some(task), Some(found)) =
+                (stage.index, program.task(1).filter(|task| task.stage == 1), stage.outputs.get(LARGEST_COUNTS))
+            {
+                let decision: Vec<u32> = bytemuck::pod_collect_to_vec(found);
+                collector.result.info.plan += &program.plan(task, &decision).explain();
             }
         }
         on_progress(done, total)
@@ -209,6 +220,13 @@ pub(crate) fn run(
                  device, or split the scene"
             ),
         }));
+    }
+    if collector.astray > 0 {
+        let count = collector.astray;
+        return Err(Error::Gpu(format!(
+            "{count} receivers stand too far from the middle of their pixels for wedges to reach them, on triangles thinner than a \
+             pixel; use evaluation 'tiled'"
+        )));
     }
     if report.stages as u64 != total {
         return Err(Error::Gpu(format!("only {} of {total} stages ran", report.stages)));
@@ -234,8 +252,9 @@ fn receivers_per_block(
     let technique_bytes = technique.bytes_per_receiver(channels as u64, sub_scenes, scene.opacity.is_some());
     // Rays of a block are bounded, so that a dispatch over them ends in time and a caller can stop between blocks.
     let most_for_rays = RAYS_PER_BLOCK / u64::from(technique.samples()).max(1);
-    // The receiver, the point it came from, and the picture's colour.
-    let each = 2 * RECEIVER_BYTES + technique_bytes + if picture { 16 } else { 0 };
+    // The receiver, the point it came from, and the picture's colour, before and after it is averaged.
+    let colors = if technique.interleaves() { 16 + NOISY_BYTES } else { 16 };
+    let each = 2 * RECEIVER_BYTES + technique_bytes + if picture { colors } else { 0 };
     let largest_buffer = technique_bytes.max(RECEIVER_BYTES);
     let binding = host.limits.storage_binding_bytes.min(host.limits.buffer_bytes);
     let most = (options.memory_limit_bytes / each).min(binding / largest_buffer).min(1 << 30) as usize;
@@ -263,6 +282,8 @@ struct Collector<'a> {
     unfinished: u64,
     /// Receivers with more attenuation than a sum holds.
     overflowed: u64,
+    /// Receivers that no wedge is sure to reach.
+    astray: u64,
 }
 
 impl<'a> Collector<'a> {
@@ -334,7 +355,8 @@ impl<'a> Collector<'a> {
             info,
         };
         let frame = contents.local.frame;
-        Self { result, colors: Vec::new(), frame, caller_ids: &contents.local.caller_ids, unfinished: 0, overflowed: 0 }
+        let caller_ids = &contents.local.caller_ids;
+        Self { result, colors: Vec::new(), frame, caller_ids, unfinished: 0, overflowed: 0, astray: 0 }
     }
 
     fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Vec<u8>>) {
@@ -356,6 +378,10 @@ impl<'a> Collector<'a> {
             self.unfinished += u64::from(counts[3]);
             self.result.info.area_receivers += u64::from(counts[4]);
             self.overflowed += u64::from(counts[5]);
+        }
+        if let Some(bytes) = outputs.get(LARGEST_COUNTS) {
+            let largest: Vec<Largest> = bytemuck::pod_collect_to_vec(bytes);
+            self.astray += largest.iter().map(|l| u64::from(l.astray)).sum::<u64>();
         }
         let (count, channels) = (self.result.receivers, self.result.channels);
         let copy = |label: &str, width: usize, into: &mut [f32]| {

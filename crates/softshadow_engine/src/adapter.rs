@@ -163,6 +163,7 @@ fn host(device: &wgpu::Device) -> Host {
             groups: limits.max_compute_workgroups_per_dimension,
             storage_buffers: limits.max_storage_buffers_per_shader_stage,
             color_targets: limits.max_color_attachments,
+            color_bytes: limits.max_color_attachment_bytes_per_sample,
         },
         features: Features { raster: true, float32_blendable: features.contains(wgpu::Features::FLOAT32_BLENDABLE) },
     }

@@ -179,6 +179,12 @@ fn check_raster(
         let limit = u64::from(host.limits.color_targets);
         return Err(PlanError::TooLarge { what: pass.label.clone(), needed: targets, limit });
     }
+    let bytes =
+        raster.colors.iter().map(|c| plan.resources[c.texture.index()].shape).map(Shape::texel_bytes).sum::<u64>();
+    if bytes > u64::from(host.limits.color_bytes) {
+        let limit = u64::from(host.limits.color_bytes);
+        return Err(PlanError::TooLarge { what: format!("{}, bytes of a pixel", pass.label), needed: bytes, limit });
+    }
     if raster.colors.iter().any(|c| c.blend != Blend::Replace) && !host.features.float32_blendable {
         return Err(missing("float32-blendable"));
     }

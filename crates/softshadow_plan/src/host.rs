@@ -26,6 +26,8 @@ pub struct Limits {
     pub storage_buffers: u32,
     /// Colour targets of one raster pass.
     pub color_targets: u32,
+    /// Bytes of one pixel in all colour targets of one raster pass.
+    pub color_bytes: u32,
 }
 
 /// Optional abilities of a host.
@@ -49,6 +51,7 @@ impl Default for Host {
                 groups: 65_535,
                 storage_buffers: 8,
                 color_targets: 8,
+                color_bytes: 32,
             },
             features: Features { raster: true, float32_blendable: false },
         }

@@ -45,6 +45,17 @@ pub enum Shape {
     },
 }
 
+impl Shape {
+    /// Bytes of one texel; 0 of a buffer.
+    #[must_use]
+    pub fn texel_bytes(self) -> u64 {
+        match self {
+            Self::Buffer { .. } => 0,
+            Self::Texture { format, .. } => format.texel_bytes(),
+        }
+    }
+}
+
 /// Texel formats that plans use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextureFormat {

@@ -15,6 +15,7 @@ mod light_samples;
 mod local;
 mod mesh;
 mod receivers;
+mod sample_sets;
 mod scene;
 
 pub use bvh::{Bvh, BvhNode};
@@ -27,4 +28,5 @@ pub use light_samples::{LightSamples, MAX_SAMPLES, SamplePattern, pass_seed, sam
 pub use local::{Corner, Dropped, LocalScene, SubScene, occluder_bounds};
 pub use mesh::{MAX_TRIANGLES, Material, Mesh};
 pub use receivers::{LocalPoint, Points, Receivers};
+pub use sample_sets::{LightSampling, MAX_INTERLEAVED, SampleSpread};
 pub use scene::Scene;

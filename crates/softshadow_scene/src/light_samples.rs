@@ -1,4 +1,4 @@
-//! Light samples: one set for every technique, every receiver and every host, made here and uploaded.
+//! Light samples: the same for every technique and every host, made here and uploaded.
 //!
 //! Samples are equal shares of the light (of its area; of solid angle for sphere and sun), so visibility is a count. They come
 //! in a progressive order: a prefix is spread over the whole light, which is what probes need.
@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use crate::error::SceneError;
 use crate::frame::LocalFrame;
 use crate::light::{Light, LightShape, LocalLight, triangulate};
+use crate::sample_sets::LightSampling;
 
 /// The most samples of one set: kernels that loop over a set stay below the 65,535 steps after which Mesa's software driver ends
 /// loops. More come as progressive passes.
@@ -23,7 +24,7 @@ pub enum SamplePattern {
     LowDiscrepancy,
 }
 
-/// A set of samples on one light, in the local frame of a scene.
+/// Sets of samples on one light, in the local frame of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightSamples {
     /// Where each sample lies on the light: `[-1, 1]²` on a rectangle, the unit disc on disc, sphere and sun, light-local
@@ -43,10 +44,8 @@ pub fn unit_square(pattern: SamplePattern, count: u32, seed: u32) -> Result<Vec<
     if count == 0 || count > MAX_SAMPLES {
         return Err(SceneError::invalid("samples", format!("must lie between 1 and {MAX_SAMPLES}, got {count}")));
     }
-    let sobol = |index: u32| [0, 1].map(|axis| f64::from(sobol_burley::sample(index, axis, seed)));
     Ok(match pattern {
-        // The crate's sequence is 2^16 long, more than MAX_SAMPLES.
-        SamplePattern::LowDiscrepancy => (0..count).map(sobol).collect(),
+        SamplePattern::LowDiscrepancy => (0..count).map(|index| sobol(index, seed)).collect(),
         SamplePattern::Stratified => {
             let cells = Cells::new(count);
             let order = progressive_order(&cells, count);
@@ -55,14 +54,19 @@ pub fn unit_square(pattern: SamplePattern, count: u32, seed: u32) -> Result<Vec<
     })
 }
 
+/// A point of the Owen-scrambled sequence, which is 2^16 long: more than MAX_SAMPLES.
+pub(crate) fn sobol(index: u32, seed: u32) -> [f64; 2] {
+    [0, 1].map(|axis| f64::from(sobol_burley::sample(index, axis, seed)))
+}
+
 /// The unit square cut into `n` cells of equal area: rows of equal cells, each row as high as its share of the cells.
-struct Cells {
+pub(crate) struct Cells {
     /// First cell of each row, and `n` at the end.
     row_starts: Vec<u32>,
 }
 
 impl Cells {
-    fn new(count: u32) -> Self {
+    pub(crate) fn new(count: u32) -> Self {
         // 32 = 8 × 4 and 128 = 16 × 8; a count without such a pair of factors gets rows that differ by one cell.
         let rows = (1..=count)
             .take_while(|r| r * r <= count)
@@ -86,7 +90,7 @@ impl Cells {
         start + ((u * f64::from(end - start)) as u32).min(end - start - 1)
     }
 
-    fn jittered(&self, cell: u32, [du, dv]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn jittered(&self, cell: u32, [du, dv]: [f64; 2]) -> [f64; 2] {
         let row = self.row_starts.partition_point(|&start| start <= cell);
         let (start, end) = (self.row_starts[row - 1], self.row_starts[row]);
         let width = f64::from(end - start);
@@ -95,7 +99,7 @@ impl Cells {
 }
 
 /// All cells once, in the order in which an unscrambled Sobol sequence visits them, so that every prefix is spread out.
-fn progressive_order(cells: &Cells, count: u32) -> Vec<u32> {
+pub(crate) fn progressive_order(cells: &Cells, count: u32) -> Vec<u32> {
     let mut seen = vec![false; count as usize];
     let mut order = Vec::with_capacity(count as usize);
     let mut visit = |cell: u32, order: &mut Vec<u32>| {
@@ -128,7 +132,7 @@ fn plain_sobol(index: u32) -> [f64; 2] {
 }
 
 /// Two uniform numbers in `[0, 1)` from a cell and a seed (splitmix64).
-fn hash2(cell: u32, seed: u32) -> [f64; 2] {
+pub(crate) fn hash2(cell: u32, seed: u32) -> [f64; 2] {
     // Mixed before it is stepped: neighbouring cells must not walk through each other's numbers.
     let mut state = splitmix(u64::from(seed) << 32 | u64::from(cell));
     [0; 2].map(|_: u32| {
@@ -139,7 +143,7 @@ fn hash2(cell: u32, seed: u32) -> [f64; 2] {
 
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
-fn splitmix(mut z: u64) -> u64 {
+pub(crate) fn splitmix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
@@ -166,18 +170,12 @@ fn concentric_disc([u, v]: [f64; 2]) -> DVec2 {
 }
 
 impl LightSamples {
-    /// `count` samples of `light` in the local frame.
+    /// The samples of all sets on `light` in the local frame, set after set.
     ///
     /// # Errors
-    /// As [`unit_square`].
-    pub fn new(
-        light: &Light,
-        frame: &LocalFrame,
-        pattern: SamplePattern,
-        count: u32,
-        seed: u32,
-    ) -> Result<Self, SceneError> {
-        let square = unit_square(pattern, count, seed)?;
+    /// As [`LightSampling::squares`].
+    pub fn new(light: &Light, frame: &LocalFrame, sampling: &LightSampling) -> Result<Self, SceneError> {
+        let square = sampling.squares()?;
         let place = light.local(frame);
         let parameters: Vec<DVec2> = match light.shape() {
             LightShape::Rectangle { .. } => square.iter().map(|s| DVec2::from(*s) * 2.0 - 1.0).collect(),
@@ -242,7 +240,7 @@ fn polygon_points(outline: &[[f64; 2]], square: &[[f64; 2]]) -> Result<Vec<DVec2
     Ok(square.iter().map(point).collect())
 }
 
-/// Positions of the samples as one receiver sees them, in local float64: positions with `true`, directions with `false`.
+/// Positions of samples, given by their records, as one receiver sees them, in local float64: positions with `true`, directions with `false`.
 ///
 /// For a sphere these are points of the surface that the receiver sees, uniform in solid angle; the kernels compute
 /// the same in float32 (`shaders_wgsl/shared/light.wgsl`). `None` for a receiver inside the sphere.
@@ -250,12 +248,12 @@ fn polygon_points(outline: &[[f64; 2]], square: &[[f64; 2]]) -> Result<Vec<DVec2
 pub fn sample_positions(
     light: &Light,
     frame: &LocalFrame,
-    samples: &LightSamples,
+    records: &[[f32; 4]],
     receiver: DVec3,
 ) -> Option<Vec<(DVec3, bool)>> {
     let LightShape::Sphere { radius } = light.shape() else {
         let as_f64 = |r: &[f32; 4]| (DVec3::new(f64::from(r[0]), f64::from(r[1]), f64::from(r[2])), r[3] != 0.0);
-        return Some(samples.records.iter().map(as_f64).collect());
+        return Some(records.iter().map(as_f64).collect());
     };
     let center = light.local(frame).center;
     let axis = center - receiver;
@@ -274,7 +272,7 @@ pub fn sample_positions(
         let to_surface = outside / (1.0 + (1.0 - (1.0 + reach * reach * share) * outside).max(0.0).sqrt());
         (receiver + to_disc * to_surface, true)
     };
-    Some(samples.records.iter().map(place).collect())
+    Some(records.iter().map(place).collect())
 }
 
 #[cfg(test)]
@@ -337,14 +335,19 @@ mod tests {
         let pose = look_at([0.0, 0.0, 3.0], [0.0; 3], None).unwrap();
         let light = Light::new(LightShape::Sphere { radius: 2.0 }, pose).unwrap();
         let frame = LocalFrame::around(None);
-        let samples = LightSamples::new(&light, &frame, SamplePattern::LowDiscrepancy, 4096, 5).unwrap();
-        let positions = sample_positions(&light, &frame, &samples, DVec3::ZERO).unwrap();
+        let samples =
+            LightSamples::new(&light, &frame, &LightSampling::correlated(SamplePattern::LowDiscrepancy, 4096, 5))
+                .unwrap();
+        let positions = sample_positions(&light, &frame, &samples.records, DVec3::ZERO).unwrap();
         let cos_edge = (1.0 - 4.0 / 9.0f64).sqrt();
         let cosines: Vec<f64> = positions.iter().map(|(s, _)| s.normalize().z).collect();
         assert!(cosines.iter().all(|c| *c >= cos_edge - 1e-6));
         let mean = cosines.iter().sum::<f64>() / 4096.0;
         assert!((mean - (1.0 + cos_edge) * 0.5).abs() < 1e-4, "uniform in the cosine: {mean}");
-        assert!(sample_positions(&light, &frame, &samples, DVec3::new(0.0, 0.0, 2.0)).is_none(), "inside the light");
+        assert!(
+            sample_positions(&light, &frame, &samples.records, DVec3::new(0.0, 0.0, 2.0)).is_none(),
+            "inside the light"
+        );
     }
 
     #[test]

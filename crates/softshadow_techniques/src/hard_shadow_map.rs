@@ -19,11 +19,11 @@ use serde::{Deserialize, Serialize};
 use softshadow_plan::{
     Compare, DepthTarget, Kernel, Origin, Over, Plan, Raster, RasterKernel, Shape, TextureFormat, Values, VertexSource,
 };
-use softshadow_scene::{Light, LightShape, SamplePattern};
+use softshadow_scene::{Light, LightSampling, LightShape, SamplePattern};
 
 use crate::TechniqueError;
 use crate::parts::VISIBILITY;
-use crate::parts::light_buffers::{self, SampleSet, Sampling};
+use crate::parts::light_buffers::{self, Sampling};
 use crate::parts::shading::{self, Seen};
 use crate::parts::{receivers, scene_buffers};
 use crate::request::{ReceiverSource, Request};
@@ -138,7 +138,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &HardShadowMap) -> Plan {
         let sampling = plan.parameter("sampling", size_of::<Sampling>() as u64);
         let samples = plan.parameter("light samples", u64::from(SHADING_SAMPLES) * 16);
         let buffers = light_buffers::LightBuffers { light, sampling, samples };
-        shading::append(&mut plan, request, receivers, &buffers, Seen::Values(visibility), SHADING_SAMPLES);
+        shading::append(&mut plan, request, receivers, &buffers, Seen::Values(visibility), &shading_samples());
     }
     plan.outputs.push(visibility);
     plan.outputs.extend(request.opens_block.then_some(receivers));
@@ -149,16 +149,8 @@ pub(crate) fn plan(request: &Request<'_>, settings: &HardShadowMap) -> Plan {
 pub(crate) fn values(request: &Request<'_>, settings: &HardShadowMap, light: &Light) -> Result<Values, TechniqueError> {
     let mut values = Values::new();
     receivers::values(request, &mut values);
-    let set = SampleSet { pattern: SamplePattern::Stratified, count: SHADING_SAMPLES, seed: 0 };
-    light_buffers::values(request, light, set, &mut values)?;
-    let sampling = Sampling {
-        count: SHADING_SAMPLES,
-        words: 2,
-        probes: SHADING_SAMPLES,
-        pass_index: 0,
-        passes: 1,
-        ..Sampling::default()
-    };
+    light_buffers::values(request, light, &shading_samples(), &mut values)?;
+    let sampling = Sampling::new(request, &shading_samples(), 0, 1);
     values.insert("sampling".into(), bytemuck::bytes_of(&sampling).to_vec());
     let views = views(request, settings);
     let mut all = ShadowViews {
@@ -175,6 +167,10 @@ pub(crate) fn values(request: &Request<'_>, settings: &HardShadowMap, light: &Li
     values.insert("shadow views".into(), bytemuck::bytes_of(&all).to_vec());
     shading::values(request, 1, &mut values);
     Ok(values)
+}
+
+fn shading_samples() -> LightSampling {
+    LightSampling::correlated(SamplePattern::Stratified, SHADING_SAMPLES, 0)
 }
 
 /// The views that cover casters and receivers; none without casters.

@@ -11,8 +11,8 @@ pub mod ray_traced;
 mod request;
 
 use serde::{Deserialize, Serialize};
-use softshadow_plan::{Plan, Values};
-use softshadow_scene::{Light, SceneError};
+use softshadow_plan::{Host, Plan, Values};
+use softshadow_scene::{Light, SampleSpread, SceneError};
 
 pub use block::{Block, blocks};
 pub use depth_complexity::{Attenuation, DepthComplexity};
@@ -20,6 +20,7 @@ pub use hard_shadow_map::HardShadowMap;
 pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
 pub use parts::shading::Shading;
+use parts::spread;
 pub use program::{StageTask, VisibilityProgram};
 pub use ray_traced::RayTraced;
 pub use request::{ReceiverSource, Request, Wants};
@@ -95,6 +96,53 @@ impl Technique {
         }
     }
 
+    /// Checks whether the settings can serve such receivers and lights on such a host.
+    ///
+    /// # Errors
+    /// [`TechniqueError::Setting`] names the setting, and one that can.
+    pub fn check_call(
+        &self,
+        receivers: ReceiverSource<'_>,
+        lights: &[Light],
+        host: &Host,
+    ) -> Result<(), TechniqueError> {
+        spread::check_receivers(self.name(), self.interleaves(), receivers)?;
+        match self {
+            Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
+            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+        }
+    }
+
+    /// Checks whether the settings can serve such a scene.
+    ///
+    /// # Errors
+    /// [`TechniqueError::Setting`] names the setting, and one that can.
+    pub fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
+        match self {
+            Self::DepthComplexity(settings) => settings.check_scene(scene),
+            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+        }
+    }
+
+    /// Whether pixels are averaged with their neighbours.
+    #[must_use]
+    pub fn interleaves(&self) -> bool {
+        match self {
+            Self::RayTraced(settings) => settings.spread == SampleSpread::Interleaved,
+            Self::DepthComplexity(settings) => settings.spread == SampleSpread::Interleaved,
+            Self::HardShadowMap(_) => false,
+        }
+    }
+
+    /// Stages that one pass takes: more than one where a stage is chosen by what the one before found.
+    #[must_use]
+    pub fn stages(&self) -> u32 {
+        match self {
+            Self::DepthComplexity(settings) => settings.stages(),
+            Self::RayTraced(_) | Self::HardShadowMap(_) => 1,
+        }
+    }
+
     /// Progressive passes that one light takes.
     #[must_use]
     pub fn passes(&self) -> u32 {
@@ -119,8 +167,9 @@ impl Technique {
     #[must_use]
     pub fn halo_rows(&self) -> u32 {
         match self {
-            Self::RayTraced(settings) => u32::from(settings.probes > 0),
-            Self::HardShadowMap(_) | Self::DepthComplexity(_) => 0,
+            Self::RayTraced(settings) => settings.halo_rows(),
+            Self::DepthComplexity(settings) => settings.halo_rows(),
+            Self::HardShadowMap(_) => 0,
         }
     }
 

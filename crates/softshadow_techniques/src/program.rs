@@ -1,4 +1,5 @@
-//! The program of a whole call: every block of receivers, every light, every progressive pass, one stage each.
+//! The program of a whole call: every block of receivers, every light, every progressive pass, one stage each, or as many as the
+//! technique has.
 
 use std::sync::Arc;
 
@@ -11,7 +12,7 @@ use crate::parts::scene_buffers::SceneContents;
 use crate::request::{ReceiverSource, Request, Wants};
 use crate::{Technique, TechniqueError};
 
-/// Blocks × lights × passes. Stages need no decision from the one before.
+/// Blocks × lights × passes × stages. Only the later stages of a pass need a decision, from the one before.
 #[derive(Debug)]
 pub struct VisibilityProgram<'a> {
     /// The technique and its settings.
@@ -43,28 +44,34 @@ pub struct StageTask {
     pub light: usize,
     /// Progressive pass.
     pub pass: u32,
+    /// Stage of that pass.
+    pub stage: u32,
 }
 
 impl VisibilityProgram<'_> {
     /// How many stages there are.
     #[must_use]
     pub fn stages(&self) -> usize {
-        self.blocks.len() * self.lights.len() * self.technique.passes() as usize
+        self.blocks.len() * self.lights.len() * self.technique.passes() as usize * self.technique.stages() as usize
     }
 
     /// What stage `index` does; `None` after the last.
     #[must_use]
     pub fn task(&self, index: usize) -> Option<StageTask> {
-        let passes = self.technique.passes() as usize;
+        let (passes, stages) = (self.technique.passes() as usize, self.technique.stages() as usize);
         (index < self.stages()).then(|| StageTask {
-            block: index / (passes * self.lights.len()),
-            light: index / passes % self.lights.len(),
-            pass: (index % passes) as u32,
+            block: index / (stages * passes * self.lights.len()),
+            light: index / (stages * passes) % self.lights.len(),
+            pass: (index / stages % passes) as u32,
+            stage: (index % stages) as u32,
         })
     }
 
-    fn request(&self, task: StageTask) -> Request<'_> {
-        let last_pass = task.pass + 1 == self.technique.passes();
+    fn request(&self, task: StageTask, read_back: &[u32]) -> Request<'_> {
+        let opens_pass = task.stage == 0;
+        let last_pass = task.pass + 1 == self.technique.passes() && task.stage + 1 == self.technique.stages();
+        let mut decision = [0; 4];
+        decision.iter_mut().zip(read_back).for_each(|(word, read)| *word = *read);
         Request {
             scene: self.scene,
             receivers: self.receivers,
@@ -72,37 +79,41 @@ impl VisibilityProgram<'_> {
             light: &self.lights[task.light],
             occluders: self.occluders.get(task.light).map(Arc::as_ref),
             channels: self.channels,
-            opens_block: task.light == 0 && task.pass == 0,
+            opens_block: opens_pass && task.light == 0 && task.pass == 0,
             first_light: task.light == 0,
-            opens_run: task.block == 0 && task.light == 0 && task.pass == 0,
+            opens_run: opens_pass && task.block == 0 && task.light == 0 && task.pass == 0,
             closes_light: last_pass,
             closes_block: last_pass && task.light + 1 == self.lights.len(),
+            stage: task.stage,
+            decision,
             wants: self.wants,
             host: self.host,
         }
     }
 
-    /// The plan of one stage.
+    /// The plan of one stage, after what the stage before read back.
     #[must_use]
-    pub fn plan(&self, task: StageTask) -> Plan {
-        self.technique.plan(&self.request(task))
+    pub fn plan(&self, task: StageTask, decision: &[u32]) -> Plan {
+        self.technique.plan(&self.request(task, decision))
     }
 
     /// The plan and the parameters of one stage.
     ///
     /// # Errors
     /// As [`Technique::values`].
-    pub fn stage(&self, task: StageTask) -> Result<(Plan, Values), TechniqueError> {
-        let request = self.request(task);
+    pub fn stage(&self, task: StageTask, decision: &[u32]) -> Result<(Plan, Values), TechniqueError> {
+        let request = self.request(task, decision);
         Ok((self.technique.plan(&request), self.technique.values(&request, &self.lights[task.light], task.pass)?))
     }
 
     /// Checks what would make a stage fail, so that [`Program::step`] cannot.
     ///
     /// # Errors
-    /// As [`Technique::check`] and [`Technique::values`].
+    /// As [`Technique::check`], [`Technique::check_call`], [`Technique::check_scene`] and [`Technique::values`].
     pub fn check(&self) -> Result<(), TechniqueError> {
         self.technique.check()?;
+        self.technique.check_call(self.receivers, self.lights, &self.host)?;
+        self.technique.check_scene(self.scene)?;
         if self.technique.wants_occluders() && self.occluders.len() != self.lights.len() {
             let reason = format!("{} given for {} lights", self.occluders.len(), self.lights.len());
             return Err(TechniqueError::Setting { technique: self.technique.name(), setting: "occluders", reason });
@@ -111,15 +122,15 @@ impl VisibilityProgram<'_> {
             points.check_local(&self.scene.local.frame)?;
         }
         match self.task(0) {
-            Some(task) => self.stage(task).map(|_| ()),
+            Some(task) => self.stage(task, &[]).map(|_| ()),
             None => Ok(()),
         }
     }
 }
 
 impl Program for VisibilityProgram<'_> {
-    fn step(&self, index: usize, _decision: &[u32]) -> Step {
-        match self.task(index).map(|task| self.stage(task)) {
+    fn step(&self, index: usize, decision: &[u32]) -> Step {
+        match self.task(index).map(|task| self.stage(task, decision)) {
             Some(Ok((plan, values))) => Step::run(plan, values),
             // `check` has made the first stage already, and stages differ in numbers only.
             Some(Err(_)) | None => Step::Done,

@@ -7,25 +7,31 @@
 //!
 //! **Parameters.** `samples` a pass; their `pattern` and `seed`; `passes`, averaged, each with its own samples, from whose
 //! spread the standard error comes; `probes`: that many samples first, and all of them only where they disagree among
-//! themselves or within the eight neighbouring pixels (0 traces all samples everywhere).
+//! themselves or within the eight neighbouring pixels (0 traces all samples everywhere); `spread` and `tile`: which receivers share a set
+//! of samples (Forest et al. 2008, section 5). `correlated`: all, so penumbrae show steps. `decorrelated`: each takes one of 16 to 256
+//! stratified sets, drawn by its index, so steps become noise. `interleaved`: each pixel of a square of `tile` has a set of its own, which
+//! together are one stratified set, and the shares of pixels side by side are averaged where they see one surface.
 //!
-//! **When it is wrong.** A share of n samples is off by about 0.016 at 64 stratified samples along a straight edge, and all
-//! receivers share one set, so penumbrae show n steps rather than noise; more samples or passes help. `probes` can miss an
-//! occluder that hides less than one probe's share of the light and no neighbour's. A ray within rounding of an edge may fall to
-//! either side, but never between two triangles that share one.
+//! **When it is wrong.** A share of n samples is off by about 0.016 at 64 stratified samples along a straight edge; more samples or passes
+//! help. Interleaved shares are those of a neighbourhood: they are blurred by half of `tile`, which no number of passes undoes, and err more
+//! than one set where penumbrae are only that wide. `probes` can miss an occluder that hides less than one probe's share of the light and
+//! no neighbour's. A ray within rounding of an edge may fall to either side, but never between two triangles that share one;
+//! through two semi-opaque ones it may count both.
 //!
 //! **Sources.** Determinant test with shared edges: Davidovič, Engelhardt, Georgiev, Slusallek, Dachsbacher 2012, section 4.
-//! Hierarchy without stack: Smits 1998. The interval of a bundle of rays: Wald, Ize, Kensler, Knoll, Parker 2006.
+//! Hierarchy without stack: Smits 1998. The interval of a bundle of rays: Wald, Ize, Kensler, Knoll, Parker 2006. Interleaved samples:
+//! Keller and Heidrich 2001.
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Kernel, Over, Plan, ResourceId, Values};
-use softshadow_scene::{Light, MAX_SAMPLES, SamplePattern, pass_seed};
+use softshadow_scene::{Light, LightSampling, MAX_SAMPLES, SamplePattern, SampleSpread, pass_seed};
 
 use crate::TechniqueError;
-use crate::parts::light_buffers::{self, SampleSet, Sampling};
+use crate::parts::interleaving::{self, NOISY_BYTES};
+use crate::parts::light_buffers::{self, Sampling};
 use crate::parts::pattern_name;
 use crate::parts::resolve::{BLOCKED, Masks};
-use crate::parts::{opacity, receivers, resolve, scene_buffers, shading};
+use crate::parts::{opacity, receivers, resolve, scene_buffers, shading, spread};
 use crate::request::{ReceiverSource, Request};
 
 /// Settings of `ray_traced`.
@@ -43,11 +49,24 @@ pub struct RayTraced {
     pub passes: u32,
     /// Samples that decide whether a receiver needs all; 0 traces all samples everywhere.
     pub probes: u32,
+    /// Which receivers share a set of samples.
+    #[serde(with = "spread")]
+    pub spread: SampleSpread,
+    /// Side of the square of pixels that interleaves, 2 to 8.
+    pub tile: u32,
 }
 
 impl Default for RayTraced {
     fn default() -> Self {
-        Self { samples: 64, pattern: SamplePattern::Stratified, seed: 0, passes: 1, probes: 0 }
+        Self {
+            samples: 64,
+            pattern: SamplePattern::Stratified,
+            seed: 0,
+            passes: 1,
+            probes: 0,
+            spread: SampleSpread::Correlated,
+            tile: spread::TILE,
+        }
     }
 }
 
@@ -98,29 +117,30 @@ impl RayTraced {
         if self.probes >= self.samples && self.probes != 0 {
             return fail("probes", format!("must be fewer than the {} samples, or 0 for none", self.samples));
         }
-        Ok(())
+        spread::check("ray_traced", &self.sampling(0), u32::MAX)
+    }
+
+    /// How a pass samples the light.
+    #[must_use]
+    pub fn sampling(&self, pass: u32) -> LightSampling {
+        let Self { samples, pattern, seed, spread, tile, .. } = *self;
+        LightSampling { pattern, count: samples, seed: pass_seed(seed, pass), spread, tile }
+    }
+
+    pub(crate) fn halo_rows(&self) -> u32 {
+        // Averages are of pixels that have looked at their neighbours' probes.
+        interleaving::halo_rows(&self.sampling(0)) + u32::from(self.probes > 0)
     }
 
     pub(crate) fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64, is_semi_opaque: bool) -> u64 {
         let passes = if is_semi_opaque { opacity::bytes_per_receiver(self.samples) } else { 0 };
-        // Masks, the number of samples decided, both lists of candidates, values and their errors.
-        u64::from(self.words()) * 4 + 4 + 2 * sub_scenes * CANDIDATE_BYTES + 8 * channels + passes
+        // Masks, the number of samples decided, both lists of candidates, values and their errors, and values of one pass.
+        let noisy = if self.spread == SampleSpread::Interleaved { NOISY_BYTES } else { 0 };
+        u64::from(self.words()) * 4 + 4 + 2 * sub_scenes * CANDIDATE_BYTES + 8 * channels + noisy + passes
     }
 
     fn words(&self) -> u32 {
         self.samples.div_ceil(32)
-    }
-
-    fn sampling(&self, pass_index: u32, scene_is_empty: bool) -> Sampling {
-        Sampling {
-            count: self.samples,
-            words: self.words(),
-            // Nothing is traced in an empty scene, so no probe could call for more.
-            probes: if self.probes == 0 || scene_is_empty { self.samples } else { self.probes },
-            pass_index,
-            passes: self.passes,
-            ..Sampling::default()
-        }
     }
 }
 
@@ -129,7 +149,8 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
     let mut plan = Plan::new("ray traced");
     let count = request.block.count;
     let receivers = receivers::append(&mut plan, request);
-    let light = light_buffers::append(&mut plan, settings.samples);
+    let sampling = settings.sampling(0);
+    let light = light_buffers::append(&mut plan, sampling.total());
     let words = u64::from(settings.words());
     let blocked = plan.buffer(BLOCKED, count as u64 * words * 4);
     let decided = plan.buffer("decided samples", count as u64 * 4);
@@ -242,7 +263,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
         }
     }
     let masks = Masks { blocked, decided, areas: None, transmittance: attenuated.map(|passing| passing.samples) };
-    resolve::append(&mut plan, request, settings.samples, &light, receivers, masks);
+    resolve::append(&mut plan, request, &sampling, &light, receivers, masks);
     plan
 }
 
@@ -261,10 +282,15 @@ pub(crate) fn values(
 ) -> Result<Values, TechniqueError> {
     let mut values = Values::new();
     receivers::values(request, &mut values);
-    let set = SampleSet { pattern: settings.pattern, count: settings.samples, seed: pass_seed(settings.seed, pass) };
-    light_buffers::values(request, light, set, &mut values)?;
-    let sampling = settings.sampling(pass, request.scene.local.sub_scenes.is_empty());
-    values.insert("sampling".into(), bytemuck::bytes_of(&sampling).to_vec());
+    let sampling = settings.sampling(pass);
+    light_buffers::values(request, light, &sampling, &mut values)?;
+    interleaving::values(request, &sampling, &mut values);
+    let mut record = Sampling::new(request, &sampling, pass, settings.passes);
+    // Nothing is traced in an empty scene, so no probe could call for more.
+    if settings.probes > 0 && !request.scene.local.sub_scenes.is_empty() {
+        record.probes = settings.probes;
+    }
+    values.insert("sampling".into(), bytemuck::bytes_of(&record).to_vec());
     for (index, sub_scene) in request.scene.local.sub_scenes.iter().enumerate() {
         let node_count = sub_scene.nodes.len() as u32;
         let stages = [

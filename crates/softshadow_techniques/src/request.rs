@@ -73,6 +73,10 @@ pub struct Request<'a> {
     pub closes_light: bool,
     /// This is the block's last pass: the picture leaves.
     pub closes_block: bool,
+    /// Which stage of the light's pass the plan is for, from 0, where a technique has several.
+    pub stage: u32,
+    /// What the stage before read back.
+    pub decision: [u32; 4],
     /// What is wanted.
     pub wants: Wants,
     /// What the host can do.

@@ -11,8 +11,10 @@ use std::path::Path;
 use softshadow_scene::occluders::{NO_SIDE, OPAQUE};
 use softshadow_scene::{BvhNode, Corner, LocalPoint};
 use softshadow_shaders::{EMBEDDED, module};
+use softshadow_techniques::depth_complexity::blended::{Largest, Packing, TARGETS, WedgeView};
 use softshadow_techniques::depth_complexity::{AttenuationScale, ClusterRange, FoldSettings, FrameRecord};
 use softshadow_techniques::hard_shadow_map::{ShadowView, ShadowViews};
+use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
 use softshadow_techniques::parts::occluder_buffers::{EdgeRecord, FaceRecord, IncidentFace, UNEQUAL_FACES};
 use softshadow_techniques::parts::receivers::{CameraClip, CameraRays, PointRange, RECEIVER_BYTES, Receiver, SubScene};
@@ -29,7 +31,7 @@ struct Layout {
 /// A Rust struct: its name, its bytes by the compiler, the WGSL file and the struct there.
 type Pair = (&'static str, usize, &'static str, &'static str);
 
-const PAIRS: [Pair; 23] = [
+const PAIRS: [Pair; 27] = [
     ("Receiver", size_of::<Receiver>(), "shared/receiver.wgsl", "Receiver"),
     ("CameraClip", size_of::<CameraClip>(), "receivers/draw_triangle_ids.wgsl", "CameraClip"),
     ("CameraRays", size_of::<CameraRays>(), "receivers/place_on_triangles.wgsl", "CameraRays"),
@@ -38,6 +40,7 @@ const PAIRS: [Pair; 23] = [
     ("LocalPoint", size_of::<LocalPoint>(), "receivers/place_points.wgsl", "LocalPoint"),
     ("LightRecord", size_of::<LightRecord>(), "shared/light.wgsl", "Light"),
     ("Sampling", size_of::<Sampling>(), "shared/samples.wgsl", "Sampling"),
+    ("InterleavingRecord", size_of::<InterleavingRecord>(), "shared/continuity.wgsl", "Interleaving"),
     ("MaterialRecord", size_of::<MaterialRecord>(), "shading/shade.wgsl", "Material"),
     ("ShadingRecord", size_of::<ShadingRecord>(), "shading/shade.wgsl", "Shading"),
     ("TraceRange", size_of::<TraceRange>(), "ray_traced/hierarchy.wgsl", "TraceRange"),
@@ -53,6 +56,9 @@ const PAIRS: [Pair; 23] = [
     ("ClusterRange", size_of::<ClusterRange>(), "depth_complexity/clusters.wgsl", "ClusterRange"),
     ("AttenuationScale", size_of::<AttenuationScale>(), "depth_complexity/spread_reference.wgsl", "AttenuationScale"),
     ("FoldSettings", size_of::<FoldSettings>(), "depth_complexity/fold.wgsl", "FoldSettings"),
+    ("WedgeView", size_of::<WedgeView>(), "depth_complexity/blended/hull.wgsl", "WedgeView"),
+    ("Packing", size_of::<Packing>(), "depth_complexity/blended/packing.wgsl", "Packing"),
+    ("Largest", size_of::<Largest>(), "depth_complexity/blended/find_largest.wgsl", "Largest"),
 ];
 
 /// The one struct that holds others.
@@ -174,7 +180,7 @@ fn shader(file: &str) -> &'static str {
 }
 
 /// Constants of `depth_complexity`, each with what the kernels make of it.
-fn counted_by_kernels() -> [(&'static str, u64); 13] {
+fn counted_by_kernels() -> [(&'static str, u64); 14] {
     let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/{file}.wgsl"), name).bytes);
     let value = |file: &str, name| constant(shader(&format!("depth_complexity/{file}.wgsl")), name).unwrap();
     [
@@ -186,6 +192,7 @@ fn counted_by_kernels() -> [(&'static str, u64); 13] {
         ("SLOT_BYTES", bytes("tiles", "Slot")),
         ("CLUSTER_BYTES", bytes("clusters", "Cluster")),
         ("MOST_SAMPLES", bytes("frame", "FrameSamples") / 16),
+        ("SET_SAMPLES", bytes("sample_sets", "SampleSets") / 8),
         ("MOST_CORNERS", bytes("fold", "Outline") / 16),
         ("GROUP", bytes("fold", "GroupSamples") / 16),
         ("HEAD_BYTES", 4 * value("tiles", "HEAD")),
@@ -239,6 +246,26 @@ fn lists_of_edges_lie_as_plans_say() {
     let counts = ["parts", "chunks", "edges", "unfinished", "by_area", "overflowed", "reserved0", "reserved1"];
     let words = counts.iter().zip(0..).map(|(name, word)| ((*name).to_owned(), 4 * word));
     assert_eq!(twin("depth_complexity/tiles.wgsl", "ListCounts").members, words.collect::<Vec<_>>());
+}
+
+#[test]
+fn wedges_are_drawn_and_counted_as_plans_say() {
+    let text = source("src/depth_complexity/blended/mod.rs");
+    let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/blended/{file}.wgsl"), name).bytes);
+    assert_eq!(constant(&text, "DRAW_BYTES"), Some(bytes("append_wedges", "DrawArguments")));
+    assert_eq!(constant(&text, "CHANGE_BYTES"), Some(bytes("draw_wedges", "Changes")));
+    // A face of four corners is two triangles, and has two caps.
+    assert_eq!(constant(&source("src/depth_complexity/blended/z_fail.rs"), "CAP_CORNERS"), Some(2 * 2 * 3));
+    assert!(shader("depth_complexity/blended/z_fail.wgsl").contains("faces[index / 12u]"));
+    // An indirect draw begins with its vertices, then instances.
+    let draw = twin("depth_complexity/blended/append_wedges.wgsl", "DrawArguments").members;
+    let names = ["vertices", "instances", "first_vertex", "first_instance"];
+    let expected = names.iter().zip(0..).map(|(name, word)| ((*name).to_owned(), 4 * word));
+    assert_eq!(draw, expected.collect::<Vec<_>>());
+    // A fragment shader for each number of targets.
+    let entries = &module("depth_complexity/blended/draw_wedges.wgsl").unwrap().entry_points;
+    let found = entries.keys().filter_map(|name| name.strip_prefix("add_digits_")).map(|n| n.parse::<u32>().unwrap());
+    assert_eq!(found.collect::<BTreeSet<_>>(), BTreeSet::from(TARGETS));
 }
 
 #[test]
@@ -308,7 +335,7 @@ fn the_text_says_what_the_compiler_does() {
     assert_eq!(read("BvhNode"), offsets!(BvhNode, low, skip, high, leaf));
     assert_eq!(
         read("Sampling"),
-        offsets!(Sampling, count, words, probes, pass_index, passes, reserved0, reserved1, reserved2)
+        offsets!(Sampling, count, words, probes, pass_index, passes, sets, row, first_receiver)
     );
 }
 

@@ -76,10 +76,8 @@ impl Truth {
         let placed = seen.placed.as_ref().unwrap();
         let masks = seen.masks.as_ref().unwrap();
         let count = settings.samples as usize;
-        let samples = |from: &[Point]| {
-            light_points(scene, light, settings.pattern, settings.samples, settings.seed, from).unwrap()
-        };
-        let shared = (!is_sphere(light)).then(|| samples(&[]));
+        let width = seen.image.map_or(0, |[width, _]| width);
+        let at = light_points(scene, light, &settings.sampling(0), &placed.positions, width).unwrap();
         let mut total = Agreement::default();
         for index in (0..seen.receivers).filter(|i| seen.valid[*i]) {
             let normal = placed.normals[index];
@@ -88,20 +86,13 @@ impl Truth {
                 normal: (normal != [0.0; 3]).then(|| normal.map(f64::from)),
                 excluded_triangle: self.index_of_caller_id.get(&placed.triangles[index]).copied(),
             };
-            let own;
-            let at = match &shared {
-                Some(set) => set,
-                None => {
-                    own = samples(&[placed.positions[index]]);
-                    &own
-                }
-            };
+            let first = if at.rows == 1 { 0 } else { index * count };
             let place = |p: &Point| match at.at_infinity {
                 true => Target::Direction(*p),
                 false if is_sphere(light) => Target::Point(self.local.frame.local_from_world(*p).to_array()),
                 false => Target::Point(self.local_point(*p)),
             };
-            let targets: Vec<Target> = at.positions.iter().map(place).collect();
+            let targets: Vec<Target> = at.positions[first..first + count].iter().map(place).collect();
             let verdicts = self.verdicts(light, &receiver, &targets);
             for (sample, verdict) in (0..count).zip(verdicts) {
                 let blocked = masks.bits[index * masks.words + sample / 32] >> (sample % 32) & 1 == 1;

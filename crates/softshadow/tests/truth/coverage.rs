@@ -37,7 +37,7 @@ impl Coverage {
         self.in_penumbra >= 100 && self.beyond_three * 100 <= self.in_penumbra && self.worst <= 5.0 && self.inexact == 0
     }
 
-    fn add(&mut self, value: f64, standard_error: f64, [low, high]: [f64; 2]) {
+    pub(crate) fn add(&mut self, value: f64, standard_error: f64, [low, high]: [f64; 2]) {
         self.receivers += 1;
         let error = (value - high).max(0.0) - (low - value).max(0.0);
         if high <= 0.0 || low >= 1.0 {

@@ -43,11 +43,11 @@ fn shipped_scenes_have_the_bits_of_rays() {
 }
 
 /// A ring and a ball over each other, and every kind of light over them.
-fn bodies() -> Scene {
+pub(crate) fn bodies() -> Scene {
     scene(&[torus(0.5, 0.2, 24, 12), sphere([0.1, 0.0, 0.6], 0.25, 2)].concat())
 }
 
-fn lights() -> Vec<Light> {
+pub(crate) fn lights() -> Vec<Light> {
     let pose = look_at([0.5, 0.4, 3.0], [0.0; 3], None).unwrap();
     let bracket = [[-0.5, -0.5], [0.6, -0.5], [0.6, -0.15], [-0.1, -0.15], [-0.1, 0.45], [-0.5, 0.45]];
     [

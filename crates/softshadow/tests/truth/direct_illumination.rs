@@ -95,8 +95,8 @@ fn sums(scene: &Scene, light: &Light, lamp: &Lamp, samples: u32, shown: &Picture
     let triangles = triangles_of(scene);
     let surfaces = surfaces(scene, shown);
     let positions: Vec<Point> = surfaces.iter().map(|(_, _, surface)| surface.position).collect();
-    let settings = RayTraced::default();
-    let points = light_points(scene, light, settings.pattern, samples, settings.seed, &positions).unwrap();
+    let settings = RayTraced { samples, ..RayTraced::default() };
+    let points = light_points(scene, light, &settings.sampling(0), &positions, 0).unwrap();
     let rows = points.positions.chunks_exact(samples as usize).cycle();
     let mut found = Vec::new();
     for ((_, own, surface), row) in surfaces.iter().zip(rows) {

@@ -100,7 +100,7 @@ fn a_textured_light_counts_each_sample_by_its_radiance() {
     let seen = see(&shade, &[textured], &receivers, &technique);
     let plain = see(&shade, std::slice::from_ref(&light), &receivers, &technique);
     assert_eq!((seen.channels, plain.channels), (3, 1));
-    let samples = light_points(&shade, &light, settings.pattern, settings.samples, settings.seed, &[]).unwrap();
+    let samples = light_points(&shade, &light, &settings.sampling(0), &[], 0).unwrap();
     let radiance: Vec<[f32; 3]> =
         samples.parameters.iter().map(|p| texture.at(f64::from(p[0]), f64::from(p[1]))).collect();
     let masks = seen.masks.as_ref().unwrap();

@@ -1,6 +1,6 @@
 //! Light samples are equal shares of the light, and independent of each other.
 
-use softshadow::{LightShape, SamplePattern, light_points, measure};
+use softshadow::{LightSampling, LightShape, SamplePattern, light_points, measure};
 
 use crate::common::{Random, lamp, points, ray_traced, rectangle, see};
 use crate::shapes::{disc, plate, scene};
@@ -22,7 +22,8 @@ fn a_wide_sun_is_measured_by_solid_angle() {
 fn jitters(seed: u32) -> Vec<[f64; 2]> {
     let light = lamp(rectangle(1.0, 1.0), [0.0, 0.0, 1.0]);
     let floor = scene(&plate([-1.0, 1.0], [-1.0, 1.0], 0.0));
-    let samples = light_points(&floor, &light, SamplePattern::Stratified, 64, seed, &[]).unwrap();
+    let samples =
+        light_points(&floor, &light, &LightSampling::correlated(SamplePattern::Stratified, 64, seed), &[], 0).unwrap();
     let mut cells = vec![[f64::NAN; 2]; 64];
     for p in &samples.parameters {
         let at = p.map(|x| (f64::from(x) * 0.5 + 0.5) * 8.0);

@@ -1,8 +1,8 @@
 //! Semi-opaque occluders: products of what passes each triangle, in closed form, and what results make of them.
 
 use softshadow::{
-    Attenuation, Camera, DepthComplexity, Error, Light, LightShape, LightTexture, Material, Mesh, Options,
-    PictureOptions, Scene, Shading, Technique, look_at, render, visibility,
+    Attenuation, Camera, DepthComplexity, Error, Evaluation, Light, LightShape, LightTexture, Material, Mesh, Options,
+    PictureOptions, SampleSpread, Scene, Shading, Technique, look_at, render, visibility,
 };
 
 use crate::common::{Random, bits, context, hard_shadow_map, lamp, points, ray_traced, rays, rectangle, see};
@@ -254,7 +254,13 @@ fn pictures_are_lit_through_glass() {
     let camera = Camera::look_at([0.0, -1.5, 1.0], [0.0; 3], Some([0.0, 0.0, 1.0]), 45.0, [32, 24]).unwrap();
     let light = lamp(rectangle(1.0, 1.0), [0.0, 0.0, 3.0]);
     let probed = Technique::RayTraced(softshadow::RayTraced { probes: 16, ..rays(64) });
-    for technique in [ray_traced(64), probed, edges(64)] {
+    let spread = [SampleSpread::Decorrelated, SampleSpread::Interleaved].into_iter().flat_map(|spread| {
+        [
+            Technique::RayTraced(softshadow::RayTraced { spread, ..rays(16) }),
+            Technique::DepthComplexity(DepthComplexity { samples: 16, spread, ..DepthComplexity::default() }),
+        ]
+    });
+    for technique in [ray_traced(64), probed, edges(64)].into_iter().chain(spread) {
         for shading in [Shading::Integrated, Shading::Modulated] {
             let options = PictureOptions { shading, ..PictureOptions::default() };
             let picture = |scene: &Scene| {
@@ -369,4 +375,43 @@ fn a_depth_map_says_that_it_takes_glass_for_opaque() {
     }
     let opaque = see(&scene(&plate([-1.0, 1.0], [-1.0, 1.0], 1.0)), &light, &under, &hard_shadow_map(64));
     assert!(opaque.info.notes.is_empty());
+}
+
+#[test]
+fn wedges_refuse_glass_with_the_way_out() {
+    let camera = Camera::look_at([0.0, -1.5, 1.0], [0.0; 3], Some([0.0, 0.0, 1.0]), 45.0, [8, 6]).unwrap();
+    let light = lamp(rectangle(1.0, 1.0), [0.0, 0.0, 3.0]);
+    let shade = [plate([-1.0, 1.0], [-1.0, 1.0], 0.0), plate([-1.0, 1.0], [-1.0, 1.0], 2.0)].concat();
+    let evaluation = Evaluation::Blended;
+    let technique = Technique::DepthComplexity(DepthComplexity { evaluation, ..DepthComplexity::default() });
+    let run = |opacity| {
+        let (receivers, options) = (softshadow::Receivers::Camera(camera), Options::default());
+        let scene = with(&shade, |t| if t < 2 { 1.0 } else { opacity });
+        visibility(context(), &scene, std::slice::from_ref(&light), &receivers, &technique, &options, &mut |_, _| true)
+    };
+    assert!(run(1.0).is_ok());
+    let words = run(0.5).unwrap_err().to_string();
+    assert!(words.contains("evaluation") && words.contains("semi-opaque") && words.contains("'tiled'"), "{words}");
+}
+
+#[test]
+fn what_all_samples_pass_alike_has_no_error() {
+    // Pixels under one large sheet, whose diagonal no sample is near to: a binomial estimate would be 0.05.
+    let all = [plate([-1.0, 1.0], [-1.0, 1.0], 0.0), plate([-8.0, 20.0], [-8.0, 9.0], 2.0)].concat();
+    let camera = Camera::look_at([0.0, -1.5, 1.0], [0.0; 3], Some([0.0, 0.0, 1.0]), 45.0, [32, 24]).unwrap();
+    let light = [lamp(rectangle(1.0, 1.0), [0.0, 0.0, 3.0])];
+    for spread in [SampleSpread::Correlated, SampleSpread::Decorrelated, SampleSpread::Interleaved] {
+        let technique = DepthComplexity { samples: 64, spread, ..DepthComplexity::default() };
+        for technique in
+            [Technique::RayTraced(softshadow::RayTraced { spread, ..rays(64) }), Technique::DepthComplexity(technique)]
+        {
+            let shade = with(&all, |t| if t < 2 { 1.0 } else { 0.75 });
+            let seen = see(&shade, &light, &softshadow::Receivers::Camera(camera), &technique);
+            let valid = || (0..seen.receivers).filter(|i| seen.valid[*i]);
+            assert!(valid().count() > 200);
+            let errors = seen.standard_error.as_ref().unwrap();
+            let most = valid().map(|i| errors[i]).fold(0.0, f32::max);
+            assert!(valid().all(|i| (seen.values[i] - 0.25).abs() < 1e-5) && most < 1e-5, "{spread:?}: {most}");
+        }
+    }
 }

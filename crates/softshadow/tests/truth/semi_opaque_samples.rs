@@ -1,7 +1,10 @@
 //! What passes to every sample: against float64 crossings of the same triangles, and rays against edges.
 
 use softshadow::measure::{OcclusionTracer, Receiver, Target};
-use softshadow::{Camera, Light, Receivers, SamplePattern, Scene, Visibility, light_points};
+use softshadow::{
+    Camera, DepthComplexity, Light, LightSampling, LightTexture, RayTraced, Receivers, SamplePattern, SampleSpread,
+    Scene, Technique, Visibility, light_points,
+};
 use softshadow_scene::LocalScene;
 
 use crate::common::{Random, points, ray_traced, see, surface_points};
@@ -40,7 +43,8 @@ impl Truth {
     /// Compares every receiver's only sample.
     fn compare(&self, scene: &Scene, light: &Light, seed: u32, seen: &Visibility) -> Found {
         let placed = &seen.placed.as_ref().unwrap().positions;
-        let at = light_points(scene, light, SamplePattern::Stratified, 1, seed, placed).unwrap();
+        let sampling = LightSampling::correlated(SamplePattern::Stratified, 1, seed);
+        let at = light_points(scene, light, &sampling, placed, 0).unwrap();
         let local = |p: Point| self.local.frame.local_from_world(p).to_array();
         let float32 = |p: Point| self.local.frame.local_from_world(p).as_vec3().to_array().map(f64::from);
         let mut found = Found::default();
@@ -162,4 +166,48 @@ fn receivers_on_semi_opaque_bodies_leave_their_own_triangle_out() {
         println!("{name} seen by a camera: {differing} of {pixels} pixels differ");
         assert!(differing * 1000 <= pixels, "{name}: {differing} of {pixels}");
     }
+}
+
+/// One set of samples for every receiver, or several: rays and edges pass the same to each of them, and see the same light by it.
+#[test]
+fn spread_samples_pass_what_rays_pass() {
+    let camera = Camera::look_at([1.6, -1.9, 1.4], [0.0, 0.0, 0.2], Some([0.0, 0.0, 1.0]), 40.0, [48, 36]).unwrap();
+    let camera = Receivers::Camera(camera);
+    let floor = points(Random(62).points(1500, [-1.2, 1.2], [-1.2, 1.2], [-1.0, -0.5]));
+    let texture = LightTexture::new(2, 1, vec![[1.0, 0.0, 0.2], [0.0, 1.0, 0.2]]).unwrap();
+    let textured = lights()[0].clone().with_texture(texture).unwrap();
+    let (mut differing, mut apart, mut partly, mut all) = (0, 0, 0, 0);
+    for (_, soup) in soups() {
+        let shade = with(&[soup, plate([-2.0, 2.0], [-2.0, 2.0], -0.9)].concat(), mixed);
+        for light in lights().into_iter().chain([textured.clone()]) {
+            let light = std::slice::from_ref(&light);
+            for (spread, receivers, samples) in [
+                (SampleSpread::Decorrelated, &floor, 1),
+                (SampleSpread::Decorrelated, &camera, 16),
+                (SampleSpread::Decorrelated, &floor, 130),
+                (SampleSpread::Interleaved, &camera, 16),
+                (SampleSpread::Interleaved, &camera, 100),
+            ] {
+                let of = |technique: &Technique| see(&shade, light, receivers, technique);
+                let rays = of(&Technique::RayTraced(RayTraced { samples, spread, ..RayTraced::default() }));
+                let folded = DepthComplexity { samples, spread, ..DepthComplexity::default() };
+                let edges = of(&Technique::DepthComplexity(folded));
+                let one_set = of(&ray_traced(samples));
+                let differs =
+                    |(a, b): (&f32, &f32)| f64::from((a - b).abs()) > 10.0 * BY_LAYER * f64::from(*a) + FLOAT32;
+                differing += rays.values.iter().zip(&edges.values).filter(|pair| differs(*pair)).count();
+                apart += rays.values.iter().zip(&one_set.values).filter(|pair| differs(*pair)).count();
+                partly += rays.values.iter().filter(|share| **share > 0.01 && **share < 0.99).count();
+                all += rays.values.len();
+                let errors = [&rays, &edges].map(|seen| seen.standard_error.as_ref().unwrap());
+                let wrong = |(a, b): (&&f32, &&f32)| (**a - **b).abs() > 2e-3;
+                differing += errors[0].iter().zip(errors[1]).filter(|(a, b)| wrong((a, b))).count();
+            }
+        }
+    }
+    println!(
+        "spread edges against rays: {differing} of {all} values differ; {apart} from those of one set; {partly} partly lit"
+    );
+    assert!(partly * 10 > all && apart * 10 > all, "{partly} {apart} of {all}");
+    assert!(differing * 1000 <= all, "{differing} of {all}");
 }

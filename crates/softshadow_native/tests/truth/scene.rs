@@ -5,7 +5,7 @@ use softshadow_measure::{OcclusionTracer, ProjectedSample, ProjectedView, Receiv
 use softshadow_native::depth_complexity::{Coverage, DepthComplexity, Receiver, Seen};
 use softshadow_scene::occluders::{LightBoundary, Occluders};
 use softshadow_scene::{
-    Light, LightFrame, LightKind, LightSamples, LightShape, LocalFrame, SamplePattern, sample_positions,
+    Light, LightFrame, LightKind, LightSamples, LightSampling, LightShape, LocalFrame, SamplePattern, sample_positions,
 };
 
 /// Local float32 triangles.
@@ -42,7 +42,9 @@ impl Setup {
         opacity: fn(usize) -> f32,
     ) -> Self {
         let frame = LightFrame::new(&light, &local);
-        let parameters = LightSamples::new(&light, &local, SamplePattern::Stratified, samples, 1).unwrap();
+        let parameters =
+            LightSamples::new(&light, &local, &LightSampling::correlated(SamplePattern::Stratified, samples, 1))
+                .unwrap();
         let exact: Vec<Triangle> = triangles.iter().map(|t| t.map(|v| v.map(f64::from))).collect();
         Self {
             occluders: Occluders::new(&triangles, opacity, &frame.boundary).unwrap(),
@@ -106,7 +108,7 @@ impl Setup {
             }
             LightShape::Sphere { .. } => {
                 let p = DVec3::from(receiver.position.map(f64::from));
-                let positions = sample_positions(&self.light, &self.local, &self.parameters, p).unwrap();
+                let positions = sample_positions(&self.light, &self.local, &self.parameters.records, p).unwrap();
                 positions.iter().map(|(s, _)| Target::Point(s.to_array())).collect()
             }
         }

@@ -56,6 +56,9 @@ fn bindings_and_targets_of_a_pass() {
     let again = softshadow_plan::ColorTarget { texture: second, ..raster_of(&mut plan).colors[0] };
     raster_of(&mut plan).colors.push(again);
     at_the_limit(&plan, 2, |host, n| host.limits.color_targets = n as u32, too_large("draw", 2));
+    // Two targets of four bytes; depth is no colour.
+    let bytes = too_large("draw, bytes of a pixel", 8);
+    at_the_limit(&plan, 8, |host, n| host.limits.color_bytes = n as u32, bytes);
 }
 
 #[test]

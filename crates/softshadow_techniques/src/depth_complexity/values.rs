@@ -1,23 +1,24 @@
 //! The parameters of the plans: what changes from light to light and pass to pass.
 
 use softshadow_plan::Values;
-use softshadow_scene::{Light, LightFrame, LightKind, LightSamples, Outline, pass_seed};
-
 use softshadow_scene::occluders::UNITS_PER_HALVING;
+use softshadow_scene::{Light, LightFrame, LightKind, LightShape, Outline, SampleSpread};
 
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
-use super::{Attenuation, DepthComplexity};
+use super::{Attenuation, DepthComplexity, Evaluation, blended};
 use crate::TechniqueError;
-use crate::parts::light_buffers::{self, SampleSet, Sampling};
+use crate::parts::light_buffers::{self, Sampling};
 use crate::parts::opacity::UNITS_PER_WHOLE;
-use crate::parts::{receivers, shading};
-use crate::request::Request;
+use crate::parts::{interleaving, receivers, shading};
+use crate::request::{ReceiverSource, Request};
 
 /// Samples of one set at most: as many as one uniform holds.
 pub(super) const MOST_SAMPLES: u32 = 256;
 /// Samples that one fold holds.
 pub(super) const GROUP: u32 = 64;
+/// Samples of all sets at most, where there are several: as many as the largest uniform holds, two a row.
+pub(super) const SET_SAMPLES: u32 = 8192;
 /// Corners of a polygon light at most.
 pub(super) const MOST_CORNERS: usize = 64;
 /// An area is not believed when it differs from the samples' share by more than this over `samples^(3/4)`: twice the largest error seen
@@ -92,17 +93,11 @@ pub(crate) fn values(
 ) -> Result<Values, TechniqueError> {
     let mut values = Values::new();
     receivers::values(request, &mut values);
-    let set = SampleSet { pattern: settings.pattern, count: settings.samples, seed: pass_seed(settings.seed, pass) };
-    light_buffers::values(request, light, set, &mut values)?;
-    let sampling = Sampling {
-        count: settings.samples,
-        words: settings.words(),
-        probes: settings.samples,
-        pass_index: pass,
-        passes: settings.passes,
-        ..Sampling::default()
-    };
-    values.insert("sampling".into(), bytemuck::bytes_of(&sampling).to_vec());
+    let sampling = settings.sampling(pass);
+    let samples = light_buffers::values(request, light, &sampling, &mut values)?;
+    interleaving::values(request, &sampling, &mut values);
+    let record = Sampling::new(request, &sampling, pass, settings.passes);
+    values.insert("sampling".into(), bytemuck::bytes_of(&record).to_vec());
 
     let local = &request.scene.local.frame;
     let frame = LightFrame::new(light, local);
@@ -119,44 +114,65 @@ pub(crate) fn values(
         bytemuck::cast_slice(&rows).to_vec()
     };
     values.insert("light outline".into(), padded(&corners, MOST_CORNERS));
-    let samples = frame.samples(light, &LightSamples::new(light, local, set.pattern, set.count, set.seed)?);
-    values.insert("frame samples".into(), padded(&samples, MOST_SAMPLES as usize));
-
+    let mut placed = frame.samples(light, &samples);
+    let shared = shares_samples(light, settings);
+    if shared {
+        values.insert("frame samples".into(), padded(&placed, MOST_SAMPLES as usize));
+    }
     let (tile_count, receiver_count) = (tiles(request), request.block.count as u32);
     let edge_count = request.occluders.map_or(0, |o| o.edge_count);
     let range = ClusterRange { edge_count, cluster_count: edge_count.div_ceil(CLUSTER), tile_count, receiver_count };
     values.insert("cluster range".into(), bytemuck::bytes_of(&range).to_vec());
-    for (group, samples) in (0..).zip(samples.chunks(GROUP as usize)) {
+    for group in 0..settings.samples.div_ceil(GROUP) {
+        let here = GROUP.min(settings.samples - group * GROUP);
         let fold = FoldSettings {
             slot_count: receiver_count,
             group,
-            sampling_bound: SAMPLING_BOUND * (samples.len() as f32).powf(-0.75),
+            sampling_bound: SAMPLING_BOUND * (here as f32).powf(-0.75),
             tile_count,
         };
         values.insert(format!("fold settings {group}"), bytemuck::bytes_of(&fold).to_vec());
-        values.insert(format!("group samples {group}"), padded(samples, GROUP as usize));
+        if shared {
+            let first = (group * GROUP) as usize;
+            let group_samples = padded(&placed[first..first + here as usize], GROUP as usize);
+            values.insert(format!("group samples {group}"), group_samples);
+        }
+    }
+    if !shared {
+        placed.resize(SET_SAMPLES as usize, [0.0; 2]);
+        values.insert("sample sets".into(), bytemuck::cast_slice(&placed).to_vec());
     }
     let scale = AttenuationScale::of(settings.attenuation);
     values.insert("attenuation scale".into(), bytemuck::bytes_of(&scale).to_vec());
     values.insert("receiver order".into(), bytemuck::cast_slice(&order(request)).to_vec());
     shading::values(request, settings.passes, &mut values);
+    if let (Evaluation::Blended, ReceiverSource::Camera(camera)) = (settings.evaluation, request.receivers) {
+        blended::values(request, settings, &camera.local(local), &mut values);
+    }
     Ok(values)
 }
 
+/// Whether one set of samples serves all receivers from one place. A sphere's move with the receiver, and tiles take them for its own.
+pub(super) fn shares_samples(light: &Light, settings: &DepthComplexity) -> bool {
+    let stands_still =
+        settings.evaluation == Evaluation::Blended || !matches!(light.shape(), LightShape::Sphere { .. });
+    settings.spread == SampleSpread::Correlated && stands_still
+}
+
 /// Whether the visible area answers: it is asked for, it is what visibility is a share of, and its outline fits. A texture's light is in its
-/// samples, whatever light of the call it belongs to.
+/// samples, whatever light of the call it belongs to; and an area under a layer that lets light through is no visibility.
 pub(super) fn area_answers(request: &Request<'_>, settings: &DepthComplexity) -> bool {
-    let fits = match light_outline(request) {
+    let fits = match LightFrame::new(request.light, &request.scene.local.frame).outline {
         Some(Outline::Polygon(corners)) => corners.len() <= MOST_CORNERS,
         Some(Outline::Disc(_)) => true,
         None => false,
     };
-    settings.exact_area && fits && request.channels == 1
+    settings.exact_area && fits && request.channels == 1 && !is_attenuated(request)
 }
 
-/// The outline of the light, where visibility is a share of its area.
-pub(super) fn light_outline(request: &Request<'_>) -> Option<Outline> {
-    LightFrame::new(request.light, &request.scene.local.frame).outline
+/// Whether anything semi-opaque lies before the light.
+pub(super) fn is_attenuated(request: &Request<'_>) -> bool {
+    request.occluders.is_some_and(|occluders| occluders.is_semi_opaque)
 }
 
 fn frame_record(frame: &LightFrame, sample_count: u32, corners: usize) -> FrameRecord {

@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Vec3};
 use softshadow_plan::{Plan, ResourceId, Values};
-use softshadow_scene::{Light, LightSamples, LightShape, SamplePattern, SceneError};
+use softshadow_scene::{Light, LightSamples, LightSampling, LightShape, SampleSpread, SceneError};
 
-use crate::request::Request;
+use crate::request::{ReceiverSource, Request};
 
 /// `Light` of `shared/light.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -23,7 +23,7 @@ pub struct LightRecord {
 }
 
 /// `Sampling` of `shared/samples.wgsl`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Sampling {
     /// Samples of the light.
@@ -36,12 +36,26 @@ pub struct Sampling {
     pub pass_index: u32,
     /// Progressive passes in all.
     pub passes: u32,
-    /// Fills the struct.
-    pub reserved0: u32,
-    /// Fills the struct.
-    pub reserved1: u32,
-    /// Fills the struct.
-    pub reserved2: u32,
+    /// Sets of samples; with a row, the side of the square of pixels that has them all.
+    pub sets: u32,
+    /// Pixels of a row, where sets are taken by place; 0 where they are drawn.
+    pub row: u32,
+    /// First receiver of the block among all of the call.
+    pub first_receiver: u32,
+}
+
+impl Sampling {
+    /// Pass `pass_index` of `passes` in which every sample is traced for every receiver.
+    #[must_use]
+    pub fn new(request: &Request<'_>, sampling: &LightSampling, pass_index: u32, passes: u32) -> Self {
+        let (sets, row) = match (sampling.spread, request.receivers) {
+            (SampleSpread::Interleaved, ReceiverSource::Camera(camera)) => (sampling.tile, camera.size()[0]),
+            _ => (sampling.sets(), 0),
+        };
+        let first = if sampling.spread == SampleSpread::Correlated { 0 } else { request.block.first as u32 };
+        let (count, words) = (sampling.count, sampling.count.div_ceil(32));
+        Self { count, words, probes: count, pass_index, passes, sets, row, first_receiver: first }
+    }
 }
 
 const FLAT: u32 = 0;
@@ -55,11 +69,11 @@ pub struct LightBuffers {
     pub light: ResourceId,
     /// `Sampling`.
     pub sampling: ResourceId,
-    /// One vec4 a sample.
+    /// One vec4 a sample of any set.
     pub samples: ResourceId,
 }
 
-/// Adds the light's parameters for `count` samples.
+/// Adds the light's parameters for `count` samples of all sets.
 pub fn append(plan: &mut Plan, count: u32) -> LightBuffers {
     LightBuffers {
         light: plan.parameter("light", size_of::<LightRecord>() as u64),
@@ -68,33 +82,27 @@ pub fn append(plan: &mut Plan, count: u32) -> LightBuffers {
     }
 }
 
-/// Adds one vec4 of relative radiance a sample.
+/// Adds one vec4 of relative radiance a sample of any set.
 pub fn append_radiance(plan: &mut Plan, count: u32) -> ResourceId {
     plan.parameter("sample radiance", u64::from(count) * 16)
 }
 
-/// How a light is sampled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SampleSet {
-    /// Pattern in the unit square.
-    pub pattern: SamplePattern,
-    /// How many.
-    pub count: u32,
-    /// Which set of them.
-    pub seed: u32,
-}
-
-/// The values of the parameters that [`append`] and [`append_radiance`] added, but for `sampling`.
+/// The values of the parameters that [`append`] and [`append_radiance`] added, but for `sampling`; and the samples.
 ///
 /// # Errors
 /// As [`LightSamples::new`].
-pub fn values(request: &Request<'_>, light: &Light, set: SampleSet, values: &mut Values) -> Result<(), SceneError> {
-    let samples = LightSamples::new(light, &request.scene.local.frame, set.pattern, set.count, set.seed)?;
+pub fn values(
+    request: &Request<'_>,
+    light: &Light,
+    sampling: &LightSampling,
+    values: &mut Values,
+) -> Result<LightSamples, SceneError> {
+    let samples = LightSamples::new(light, &request.scene.local.frame, sampling)?;
     values.insert("light".into(), bytemuck::bytes_of(&record(request, light, &samples)).to_vec());
     values.insert("light samples".into(), bytemuck::cast_slice(&samples.records).to_vec());
     let radiance: Vec<[f32; 4]> = samples.radiance.iter().map(|r| [r[0], r[1], r[2], 0.0]).collect();
     values.insert("sample radiance".into(), bytemuck::cast_slice(&radiance).to_vec());
-    Ok(())
+    Ok(samples)
 }
 
 fn record(request: &Request<'_>, light: &Light, samples: &LightSamples) -> LightRecord {

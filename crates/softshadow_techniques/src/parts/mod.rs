@@ -1,5 +1,6 @@
 //! Steps that techniques share.
 
+pub mod interleaving;
 pub mod light_buffers;
 pub mod occluder_buffers;
 pub mod opacity;
@@ -8,6 +9,7 @@ pub mod receivers;
 pub mod resolve;
 pub mod scene_buffers;
 pub mod shading;
+pub(crate) mod spread;
 
 /// Label of the buffer in which every technique leaves its values.
 pub const VISIBILITY: &str = "visibility";

@@ -48,6 +48,29 @@ pub struct CameraClip {
     reserved2: u32,
 }
 
+/// The ways of a camera's clip space: coordinates of p are dots with p − eye.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClipWays {
+    /// Across.
+    pub x: DVec3,
+    /// Up.
+    pub y: DVec3,
+}
+
+/// The clip space of `count` rows of a camera's image.
+#[must_use]
+pub fn clip_ways(camera: &LocalCamera, first: usize, count: usize) -> ClipWays {
+    let (width, height) = (f64::from(camera.size[0]), count as f64);
+    // right·fx and up·fy in pixels, from steps of length 1/fx and 1/fy.
+    let (x_pixels, y_pixels) =
+        (camera.step_x / camera.step_x.length_squared(), camera.step_y / camera.step_y.length_squared());
+    let (cx, cy) = (-camera.corner.dot(x_pixels), -camera.corner.dot(y_pixels) - first as f64);
+    ClipWays {
+        x: x_pixels * (2.0 / width) + camera.forward * (2.0 * cx / width - 1.0),
+        y: y_pixels * (-2.0 / height) + camera.forward * (1.0 - 2.0 * cy / height),
+    }
+}
+
 /// `CameraRays` of `place_on_triangles.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -158,16 +181,12 @@ fn append_points(plan: &mut Plan, request: &Request<'_>, receivers: ResourceId) 
 
 fn camera_values(request: &Request<'_>, camera: &LocalCamera, values: &mut Values) {
     let f32s = |v: DVec3| v.as_vec3().to_array();
-    let [width, height] = camera.size.map(f64::from);
-    // right·fx and up·fy in pixels, from steps of length 1/fx and 1/fy.
-    let (x_pixels, y_pixels) =
-        (camera.step_x / camera.step_x.length_squared(), camera.step_y / camera.step_y.length_squared());
-    let (cx, cy) = (-camera.corner.dot(x_pixels), -camera.corner.dot(y_pixels));
+    let ways = clip_ways(camera, 0, camera.size[1] as usize);
     let clip = CameraClip {
         eye: f32s(camera.eye),
         near: NEAR,
-        clip_x: f32s(x_pixels * (2.0 / width) + camera.forward * (2.0 * cx / width - 1.0)),
-        clip_y: f32s(y_pixels * (-2.0 / height) + camera.forward * (1.0 - 2.0 * cy / height)),
+        clip_x: f32s(ways.x),
+        clip_y: f32s(ways.y),
         forward: f32s(camera.forward),
         ..bytemuck::Zeroable::zeroed()
     };

@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Content, Kernel, Over, Plan, ResourceId, Values};
-use softshadow_scene::Material;
+use softshadow_scene::{LightSampling, Material, SampleSpread};
 
-use crate::parts::light_buffers::LightBuffers;
+use crate::parts::interleaving;
+use crate::parts::light_buffers::{self, LightBuffers};
 use crate::request::{ReceiverSource, Request};
 
 /// How visibility and direct light are put together.
@@ -98,14 +99,20 @@ pub fn append(
     receivers: ResourceId,
     light: &LightBuffers,
     seen: Seen,
-    count: u32,
+    sampling: &LightSampling,
 ) {
-    let radiance = plan.find("sample radiance").unwrap_or_else(|| super::light_buffers::append_radiance(plan, count));
+    let radiance =
+        plan.find("sample radiance").unwrap_or_else(|| light_buffers::append_radiance(plan, sampling.total()));
     let shading = plan.parameter("shading", size_of::<ShadingRecord>() as u64);
     let triangle_materials = plan.uploaded("triangle materials", &request.scene.triangle_materials);
     let materials = plan.uploaded("materials", &request.scene.materials);
-    let color = plan.persistent(COLOR, request.block.count as u64 * 16);
-    let over = Over::Items { count: request.block.count as u32, work_per_item: count / 8 + 1 };
+    // A final visibility is averaged already.
+    let is_noisy = sampling.spread == SampleSpread::Interleaved && !matches!(seen, Seen::Values(_));
+    let added = match is_noisy {
+        true => interleaving::noisy_color(plan, request),
+        false => plan.persistent(COLOR, request.block.count as u64 * 16),
+    };
+    let over = Over::Items { count: request.block.count as u32, work_per_item: sampling.count / 8 + 1 };
     let (kernel, why) = match seen {
         Seen::Masks { .. } => (INTEGRATED, "adds the light of every sample that is not blocked"),
         Seen::Transmittance { .. } => (INTEGRATED_ATTENUATED, "adds the light that passes to every sample"),
@@ -120,7 +127,7 @@ pub fn append(
         .bind("sample_radiance", radiance)
         .bind("triangle_materials", triangle_materials)
         .bind("materials", materials)
-        .bind("color", color);
+        .bind("color", added);
     match seen {
         Seen::Masks { blocked, decided } => pass.bind("blocked", blocked).bind("decided", decided),
         Seen::Transmittance { transmittance, decided } => {
@@ -128,8 +135,15 @@ pub fn append(
         }
         Seen::Values(visibility) => pass.bind("visibility", visibility),
     };
-    if request.closes_block {
+    if !request.closes_block {
+        return;
+    }
+    if is_noisy {
+        let color = plan.persistent(COLOR, request.block.count as u64 * 16);
+        interleaving::append_colors(plan, request, sampling.tile, [receivers, triangle_materials, added, color]);
         plan.outputs.push(color);
+    } else {
+        plan.outputs.push(added);
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use softshadow_plan::{Over, Work, check};
-use softshadow_scene::{LightFrame, LightShape, LocalScene, Material, Mesh, Scene};
+use softshadow_scene::{LightFrame, LightShape, LocalScene, Material, Mesh, SampleSpread, Scene};
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
     DepthComplexity, OccluderContents, ReceiverSource, Request, SceneContents, Shading, Technique,
@@ -30,6 +30,20 @@ fn is_attenuated(request: &Request<'_>) -> bool {
     has_glass && looks_up_to_it
 }
 
+/// Who shares samples, and the side of the square that interleaves.
+fn spread(technique: &Technique) -> (SampleSpread, u64) {
+    match technique {
+        Technique::RayTraced(settings) => (settings.spread, u64::from(settings.tile)),
+        Technique::DepthComplexity(settings) => (settings.spread, u64::from(settings.tile)),
+        _ => (SampleSpread::Correlated, 1),
+    }
+}
+
+/// Bytes of a receiver's values before they are averaged.
+fn noisy(technique: &Technique) -> u64 {
+    if spread(technique).0 == SampleSpread::Interleaved { 16 } else { 0 }
+}
+
 /// Bytes by label that a plan must have, and no other.
 fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64> {
     let mut bytes = BTreeMap::new();
@@ -43,6 +57,14 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
         _ => None,
     };
     let samples = sampled.unwrap_or(64);
+    // Samples of all sets: a square of pixels has one each; as many as 8,192 samples are, or 256.
+    let (spread, tile) = spread(technique);
+    let sets = match spread {
+        SampleSpread::Correlated => 1,
+        SampleSpread::Decorrelated => (8192 / samples).min(256),
+        SampleSpread::Interleaved => tile * tile,
+    };
+    let interleaves = spread == SampleSpread::Interleaved;
     // Samples know their final visibility after the last pass, and only then is a light modulated by it.
     let too_early = sampled.is_some() && request.wants.picture == Some(Shading::Modulated) && !request.closes_light;
     let picture = request.wants.picture.is_some() && !too_early;
@@ -120,7 +142,14 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
         Technique::DepthComplexity(settings) => {
             let ([faces, edges, sides], tiles) = (hidden_by(request), count.div_ceil(64));
             add("light frame".into(), 128);
-            add("frame samples".into(), 256 * 16);
+            let moves = matches!(request.light.shape(), LightShape::Sphere { .. });
+            let shared = spread == SampleSpread::Correlated && !moves;
+            if shared {
+                add("frame samples".into(), 256 * 16);
+            } else {
+                // The largest uniform that core WebGPU has.
+                add("sample sets".into(), 65_536);
+            }
             add("receiver order".into(), count * 4);
             add("slots".into(), tiles * 64 * 16);
             add("blocked samples".into(), count * samples.div_ceil(32) * 4);
@@ -142,12 +171,14 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                 // of 32 words.
                 add("tile parts".into(), tiles * 2 * (5 * 16 + 32));
                 add("first faces".into(), tiles * 2 * 8 * 4);
-                add("edge lists".into(), tiles * (2 * 40 + 128 * 128));
+                add("edge lists".into(), tiles * (2 * 40 + 128 * 128) + 4096 * 128);
                 add("narrow dispatch".into(), 12);
                 add("fold dispatch".into(), 12);
                 for group in 0..samples.div_ceil(64) {
                     add(format!("fold settings {group}"), 16);
-                    add(format!("group samples {group}"), 64 * 16);
+                    if shared {
+                        add(format!("group samples {group}"), 64 * 16);
+                    }
                 }
                 let outline = LightFrame::new(request.light, &request.scene.local.frame).outline;
                 if is_attenuated(request) {
@@ -164,16 +195,26 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
     }
     if sampled.is_some() || picture {
         add("sampling".into(), 32);
-        add("light samples".into(), samples * 16);
+        add("light samples".into(), sets * samples * 16);
     }
     if picture || sampled.is_some() && request.channels == 3 {
-        add("sample radiance".into(), samples * 16);
+        add("sample radiance".into(), sets * samples * 16);
     }
     if picture {
         add("shading".into(), 32);
         add("triangle materials".into(), request.scene.local.triangle_count() as u64 * 4);
         add("materials".into(), request.scene.local.materials.len().max(1) as u64 * 32);
-        add("color".into(), count * 16);
+        let is_averaged = interleaves && request.wants.picture == Some(Shading::Integrated);
+        if is_averaged {
+            add("noisy color".into(), count * 16);
+        }
+        if request.closes_block || !is_averaged {
+            add("color".into(), count * 16);
+        }
+    }
+    if interleaves {
+        add("values of a pass".into(), count * 16);
+        add("interleaving".into(), 32);
     }
     bytes
 }
@@ -206,7 +247,7 @@ fn a_block_is_sized_by_what_a_receiver_takes() {
             let expected = match technique {
                 Technique::RayTraced(settings) => {
                     let words = u64::from(settings.samples.div_ceil(32));
-                    4 * words + 4 + 24 * scene as u64 + 8 * u64::from(channels)
+                    4 * words + 4 + 24 * scene as u64 + 8 * u64::from(channels) + noisy(technique)
                 }
                 _ => 4 * u64::from(channels),
             };
@@ -235,7 +276,7 @@ fn a_block_in_tiles_is_sized_by_no_less_than_a_receiver_takes() {
                 technique.plan(&request).memory().iter().map(|(_, bytes)| bytes).sum::<u64>()
             };
             // Its place in the order, its slot, its bits, how many are decided, and values with their errors; the receiver and its point.
-            let alone = 4 + 16 + 4 * words + 4 + 8 * u64::from(channels) + 64;
+            let alone = 4 + 16 + 4 * words + 4 + 8 * u64::from(channels) + 64 + noisy(&technique);
             // Where there are edges an area, and what 64 receivers share.
             let area = if channels == 1 && settings.exact_area { 4 } else { 0 };
             let [with_area, tile] =

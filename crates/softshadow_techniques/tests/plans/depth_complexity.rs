@@ -62,14 +62,10 @@ fn a_light_is_told_by_kind_corners_and_whether_area_is_visibility() {
             assert_eq!((frame[3], frame[15], frame[19]), (kind, corners, 65), "{:?}", light.shape());
             let fold = [0, 1].map(|group| words(&values[&format!("fold settings {group}")]));
             assert_eq!(fold.map(|fold| [fold[0], fold[1], fold[3]]), [[5, 0, 1], [5, 1, 1]], "{:?}", light.shape());
-            // The first 64 samples come with the area, and in a kernel for the outline.
-            let with_area = match light.shape() {
-                LightShape::Rectangle { .. } => "fold_quadrangle",
-                LightShape::Polygon { .. } => "fold_polygon",
-                _ => "fold_disc",
-            };
-            let without = if kind == 1 { "fold_moving" } else { "fold" };
-            assert_eq!(folds(&plan), [if by_area { with_area } else { without }, without], "{:?}", light.shape());
+            // The first 64 samples come with the area. A sphere's samples move with the receiver.
+            let without = if kind == 1 { "fold_own_samples" } else { "fold" };
+            let first = if by_area { "fold_areas" } else { without };
+            assert_eq!(folds(&plan), [first, without], "{:?}", light.shape());
             let outline = floats(&values["light outline"]);
             let expected = match LightFrame::new(&light, &fixture.scenes[1].local.frame).outline {
                 Some(Outline::Polygon(corners)) => corners,
@@ -121,7 +117,7 @@ fn samples_fill_their_place_and_no_more() {
         assert_eq!((rows.len(), set), (4 * 256, samples as usize));
         assert!(!rows.chunks_exact(4).skip(set).any(is_set));
         let sampling = words(&values["sampling"]);
-        assert_eq!(sampling, [samples, samples.div_ceil(32), samples, 0, 1, 0, 0, 0]);
+        assert_eq!(sampling, [samples, samples.div_ceil(32), samples, 0, 1, 1, 0, 0]);
         assert_eq!(words(&values["light frame"])[19], samples);
         bounds.push(f32::from_bits(words(&values["fold settings 0"])[2]));
         // Folds have 64 of them each.

@@ -16,6 +16,7 @@ const CORE: Limits = Limits {
     groups: 65_535,
     storage_buffers: 8,
     color_targets: 8,
+    color_bytes: 32,
 };
 
 /// Names of the techniques whose plans a host with so many storage buffers refuses, somewhere in the grid.
@@ -27,7 +28,9 @@ fn refused(storage_buffers: u32) -> BTreeSet<&'static str> {
     for technique in techniques() {
         technique.check().unwrap();
         let requests = fixture.requests(&technique);
-        assert!(requests.len() >= 200, "the grid is a grid");
+        // Who averages pixels serves no points.
+        let served = if technique.interleaves() { 2 } else { 1 };
+        assert!(requests.len() * served >= 200, "the grid is a grid");
         for plan in requests.iter().map(|request| technique.plan(request)) {
             match check(&plan, &host) {
                 Ok(()) => {}

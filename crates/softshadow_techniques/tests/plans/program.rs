@@ -43,7 +43,7 @@ fn every_block_light_and_pass_has_its_stage() {
         let mut expected = Vec::new();
         for block in 0..2 {
             for light in 0..2 {
-                expected.extend((0..3).map(|pass| StageTask { block, light, pass }));
+                expected.extend((0..3).map(|pass| StageTask { block, light, pass, stage: 0 }));
             }
         }
         assert_eq!(tasks, expected);

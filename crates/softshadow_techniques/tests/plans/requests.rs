@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use softshadow_plan::{Host, Plan, Values};
 use softshadow_scene::{
-    Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, SamplePattern, Scene, look_at,
+    Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, SamplePattern, SampleSpread, Scene,
+    look_at,
 };
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
@@ -99,12 +100,15 @@ impl Fixture {
             opens_run: true,
             closes_light: true,
             closes_block: true,
+            stage: 0,
+            decision: [0; 4],
             wants: Wants::default(),
             host: Host::default(),
         }
     }
 
-    /// The whole grid, as the front door asks a technique: with occluders for who works on them, and without lights that have none.
+    /// The whole grid, as the front door asks a technique: with occluders for who works on them, without lights that have none, and without
+    /// receivers that it does not serve.
     pub(crate) fn requests(&self, technique: &Technique) -> Vec<Request<'_>> {
         let asks = technique.wants_occluders();
         let mut grid = Vec::new();
@@ -112,7 +116,9 @@ impl Fixture {
         // First of all stages, first of a block, a middle one, the last.
         let places = [[true, true, true, true], [false, true, false, false], [false; 4], [false, false, true, true]];
         for scene in 0..self.scenes.len() {
-            for receivers in [self.camera(), self.points()] {
+            let served =
+                |receivers: &ReceiverSource<'_>| technique.check_call(*receivers, &[], &Host::default()).is_ok();
+            for receivers in [self.camera(), self.points()].into_iter().filter(served) {
                 let has_all = |index: &usize| !asks || *index < self.occluders[scene].len();
                 for index in (0..self.lights.len()).filter(has_all) {
                     // A picture shows a material, and without triangles there is none: the front door asks for no such plan.
@@ -145,7 +151,7 @@ impl Fixture {
 pub(crate) fn techniques() -> Vec<Technique> {
     let traced = |samples, probes, passes| {
         let pattern = if samples % 2 == 0 { SamplePattern::Stratified } else { SamplePattern::LowDiscrepancy };
-        Technique::RayTraced(RayTraced { samples, probes, passes, pattern, seed: 7 })
+        Technique::RayTraced(RayTraced { samples, probes, passes, pattern, seed: 7, ..RayTraced::default() })
     };
     let mut all = Technique::defaults();
     all.extend([traced(1, 0, 1), traced(33, 8, 3), traced(64, 63, 1), traced(1000, 0, 2)]);
@@ -168,6 +174,19 @@ pub(crate) fn techniques() -> Vec<Technique> {
     ]);
     let sum = DepthComplexity { attenuation: Attenuation::Sum, ..DepthComplexity::default() };
     all.push(Technique::DepthComplexity(sum));
+    for spread in [SampleSpread::Decorrelated, SampleSpread::Interleaved] {
+        let spreads =
+            |samples, probes, passes, tile| RayTraced { samples, probes, passes, spread, tile, ..RayTraced::default() };
+        all.extend([spreads(16, 0, 1, 4), spreads(33, 8, 2, 3)].map(Technique::RayTraced));
+        let spreads = |samples, exact_area, tile| DepthComplexity {
+            samples,
+            exact_area,
+            spread,
+            tile,
+            ..DepthComplexity::default()
+        };
+        all.extend([spreads(64, true, 4), spreads(256, false, 5)].map(Technique::DepthComplexity));
+    }
     all.extend([16, 300].map(|resolution| Technique::HardShadowMap(HardShadowMap { resolution })));
     all
 }

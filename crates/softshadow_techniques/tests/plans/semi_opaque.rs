@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 
 use softshadow_plan::{Plan, Work};
+use softshadow_scene::SampleSpread;
+use softshadow_techniques::depth_complexity::Evaluation;
 use softshadow_techniques::{Attenuation, DepthComplexity, Request, Shading, Technique};
 
 use crate::requests::{Fixture, stage, techniques};
@@ -53,6 +55,73 @@ fn areas_do_not_answer_under_glass() {
     };
     assert_eq!(resolves(SHEETS), ("resolve_areas", true));
     assert_eq!(resolves(GLASS), ("resolve_attenuated", false));
+}
+
+#[test]
+fn every_spread_goes_through_glass() {
+    let fixture = Fixture::new();
+    let shared = ["open_masks", "fold_attenuated", "resolve_attenuated", "resolve_attenuated_textured"];
+    let own = ["open_masks_of_sets", "fold_attenuated_own_samples", "keep_attenuated", "keep_attenuated_textured"];
+    let known = [shared, own].concat();
+    for (spread, light, expected) in [
+        (SampleSpread::Correlated, 0, vec![shared[0], shared[1], shared[2]]),
+        (SampleSpread::Correlated, 2, vec![own[0], own[1], shared[2]]),
+        (SampleSpread::Correlated, 4, vec![shared[0], shared[1], shared[3]]),
+        (SampleSpread::Decorrelated, 0, vec![own[0], own[1], shared[2]]),
+        (SampleSpread::Decorrelated, 4, vec![own[0], own[1], shared[3]]),
+        (SampleSpread::Interleaved, 0, vec![own[0], own[1], own[2]]),
+        (SampleSpread::Interleaved, 4, vec![own[0], own[1], own[3]]),
+    ] {
+        let technique = Technique::DepthComplexity(DepthComplexity { spread, ..DepthComplexity::default() });
+        let channels = if light == 4 { 3 } else { 1 };
+        let plan = technique.plan(&Request { channels, ..fixture.request_for(GLASS, fixture.camera(), light) });
+        let entries = plan.passes.iter().filter_map(|pass| match &pass.work {
+            Work::Compute { kernel, .. } => Some(kernel.entry),
+            _ => None,
+        });
+        let found: BTreeSet<&str> = entries.filter(|entry| known.contains(entry)).collect();
+        assert_eq!(found, expected.into_iter().collect(), "{spread:?} {light}");
+    }
+}
+
+#[test]
+fn wedges_refuse_glass() {
+    let fixture = Fixture::new();
+    let check = |evaluation, scene: usize| {
+        let technique = Technique::DepthComplexity(DepthComplexity { evaluation, ..DepthComplexity::default() });
+        technique.check_scene(&fixture.scenes[scene]).map_err(|error| error.to_string())
+    };
+    let words = "depth_complexity evaluation: 'blended' counts opaque triangles alone, and the scene has semi-opaque ones; use 'tiled'";
+    assert_eq!(check(Evaluation::Blended, GLASS), Err(words.to_owned()));
+    assert_eq!(check(Evaluation::Blended, SHEETS), Ok(()));
+    assert_eq!(check(Evaluation::Tiled, GLASS), Ok(()));
+    // Nor is there anything that the rule could change.
+    let settings = DepthComplexity {
+        evaluation: Evaluation::Blended,
+        attenuation: Attenuation::Sum,
+        ..DepthComplexity::default()
+    };
+    let words = Technique::DepthComplexity(settings).check().unwrap_err().to_string();
+    assert!(words.contains("attenuation") && words.contains("'tiled'"), "{words}");
+}
+
+#[test]
+fn a_block_is_sized_by_what_passes_too() {
+    let fixture = Fixture::new();
+    for technique in techniques() {
+        let request = fixture.request(GLASS, if technique.interleaves() { fixture.camera() } else { fixture.points() });
+        let total = |scene: usize, occluders| {
+            let mut request = Request { scene: &fixture.scenes[scene], occluders, ..request };
+            request.block.count = 64 * 64;
+            (request.opens_block, request.opens_run) = (false, false);
+            let plan = technique.plan(&request);
+            let passing = plan.memory().into_iter().find(|(label, _)| *label == "sample transmittance");
+            passing.map_or(0, |(_, bytes)| bytes)
+        };
+        let each = |is_semi_opaque| technique.bytes_per_receiver(1, 2, is_semi_opaque);
+        let occluders = fixture.request(GLASS, fixture.points()).occluders;
+        assert_eq!(total(GLASS, occluders), 64 * 64 * (each(true) - each(false)), "{technique:?}");
+    }
 }
 
 #[test]
