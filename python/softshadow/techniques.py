@@ -124,8 +124,9 @@ class DepthComplexity(Technique):
     passes : int
         Sets of samples that are averaged, each with a seed of its own.
     exact_area : bool
-        Whether the light's visible area answers where the samples show a single layer; never where something semi-opaque
-        hides the light. With evaluation "blended" samples alone answer, and the result's `info["notes"]` say so.
+        Whether the light's visible area answers where the samples show a single layer; never where something
+        semi-opaque hides the light. With evaluation "blended" samples alone answer, and the result's `info["notes"]`
+        say so.
     spread, tile
         As in :class:`RayTraced`, and with the same samples; interleaved, at most 8192 in all sets together. Evaluation
         "blended" knows "correlated" alone.
