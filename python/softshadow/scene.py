@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     import trimesh
 
 _material = _core.default_material()
-_BASE_COLOR, _ROUGHNESS, _SPECULAR = vector("base_color", _material[0]), *_material[1:]
+_BASE_COLOR, _ROUGHNESS, _SPECULAR, _OPACITY = vector("base_color", _material[0]), *_material[1:]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -38,6 +39,11 @@ class Mesh(ByValue):
         Linear reflectance in 0..1; only pictures use it, as `roughness` and `specular`.
     roughness, specular : float
         Of the glossy lobe; a specular of 0 leaves a matte surface.
+    opacity : float or (m,) float
+        Share of the light that is lost where it crosses a triangle, from either side: 1 lets nothing through, and
+        with 0 the triangle is not there, for lights and for cameras. A closed box of opacity 0.5 is crossed twice and
+        passes a quarter. Cameras see every other triangle as a solid surface. One number for all triangles, or one
+        for each.
 
     Raises
     ------
@@ -51,6 +57,7 @@ class Mesh(ByValue):
     base_color: tuple[float, float, float] = _BASE_COLOR
     roughness: float = _ROUGHNESS
     specular: float = _SPECULAR
+    opacity: float | NDArray[np.float32] = _OPACITY
 
     def __post_init__(self) -> None:
         what = f"mesh '{self.name}'"
@@ -70,6 +77,7 @@ class Mesh(ByValue):
             base_color=color(f"{what} base_color", self.base_color),
             roughness=real(f"{what} roughness", self.roughness),
             specular=real(f"{what} specular", self.specular),
+            opacity=_opacity(f"{what} opacity", self.opacity, len(faces)),
         )
 
     def __repr__(self) -> str:
@@ -87,7 +95,7 @@ class Scene:
     Raises
     ------
     SceneError
-        For coordinates that are not finite, with the mesh's name and the first bad index.
+        For coordinates that are not finite and opacities outside 0..1, with the mesh's name and the first bad index.
     TooLargeError
         For more triangles than a scene may have.
     """
@@ -132,6 +140,7 @@ class Scene:
         *,
         name: str = "mesh",
         base_color: ArrayLike = _BASE_COLOR,
+        opacity: ArrayLike = _OPACITY,
     ) -> Scene:
         """A scene of one mesh.
 
@@ -145,13 +154,15 @@ class Scene:
             What error messages call the mesh.
         base_color : (3,) float
             Linear reflectance in 0..1.
+        opacity : float or (m,) float
+            Share of the light that is lost where it crosses a triangle, in 0..1; see :class:`Mesh`.
 
         Raises
         ------
         SceneError
-            For a wrong dtype or shape, coordinates that are not finite, and indices out of range.
+            For a wrong dtype or shape, coordinates that are not finite, indices out of range, opacities outside 0..1.
         """
-        arrays: Any = {"vertices": vertices, "faces": faces, "base_color": base_color}
+        arrays: Any = {"vertices": vertices, "faces": faces, "base_color": base_color, "opacity": opacity}
         return cls([Mesh(name=name, **arrays)])
 
     @classmethod
@@ -240,8 +251,21 @@ class Scene:
 
 
 def _built(meshes: tuple[Mesh, ...], notes: tuple[str, ...]) -> _core.Scene:
-    rows = [(m.name, m.vertices, m.faces, m.base_color, m.roughness, m.specular) for m in meshes]
-    return _core.Scene(rows, list(notes))
+    def row(mesh: Mesh) -> _core._FlatMesh:
+        each = mesh.opacity if isinstance(mesh.opacity, np.ndarray) else None
+        opacity = _OPACITY if isinstance(mesh.opacity, np.ndarray) else mesh.opacity
+        material = mesh.base_color, mesh.roughness, mesh.specular, opacity
+        return mesh.name, mesh.vertices, mesh.faces, *material, each
+
+    return _core.Scene([row(mesh) for mesh in meshes], list(notes))
+
+
+def _opacity(what: str, value: ArrayLike, triangles: int) -> float | NDArray[np.float32]:
+    """One number, or a read-only float32 copy of one a triangle."""
+    if isinstance(value, Real):
+        return real(what, value)
+    with np.errstate(over="ignore"):
+        return frozen(floats(what, value, (triangles,)).astype(np.float32))
 
 
 def _copied(scene: _core.Scene) -> tuple[Mesh, ...]:
@@ -253,6 +277,7 @@ def _copied(scene: _core.Scene) -> tuple[Mesh, ...]:
             base_color=vector("base_color", base_color),
             roughness=roughness,
             specular=specular,
+            opacity=opacity if each is None else each,
         )
-        for name, vertices, faces, base_color, roughness, specular in scene.meshes()
+        for name, vertices, faces, base_color, roughness, specular, opacity, each in scene.meshes()
     )

@@ -88,6 +88,8 @@ class RayTraced(Technique):
 class HardShadowMap(Technique):
     """One depth map from the light's centre (Williams 1978): fast, and without penumbra.
 
+    Semi-opaque triangles are taken for opaque; ``info["notes"]`` says so.
+
     Parameters
     ----------
     resolution : int
@@ -122,8 +124,9 @@ class DepthComplexity(Technique):
     passes : int
         Sets of samples that are averaged, each with a seed of its own.
     exact_area : bool
-        Whether the light's visible area answers where the samples show a single layer. With evaluation "blended"
-        samples alone answer, and the result's `info["notes"]` say so.
+        Whether the light's visible area answers where the samples show a single layer; never where something
+        semi-opaque hides the light. With evaluation "blended" samples alone answer, and the result's `info["notes"]`
+        say so.
     silhouettes : {"accurate", "standard"}
         Which edges count: all that are silhouettes for any part of the light, as rays see them, or those of one point near
         its middle: fewer, and wrong next to round bodies.
@@ -132,9 +135,12 @@ class DepthComplexity(Technique):
     spread, tile
         As in :class:`RayTraced`, and with the same samples; interleaved, at most 8192 in all sets together. Evaluation
         "blended" knows "correlated" alone.
+    attenuation : {"logarithmic", "sum"}
+        How several semi-opaque layers add up: ``"logarithmic"`` is right for any number of them, the product of what
+        passes each. ``"sum"`` adds opacities, as the paper does: right for one layer, too dark for more. Tiled only.
     evaluation : {"tiled", "blended"}
         How edges find their receivers: listed for tiles of them, for points and cameras; or drawn over a camera's image
-        as penumbra wedges, as published. The samples are the same.
+        as penumbra wedges, as published, in scenes without semi-opaque triangles. The samples are the same.
     initial_counts : {"rays", "z_fail"}
         Blended only: how layers over the light's reference point are counted: by a ray a receiver, or by shadow volumes
         as published, which is wrong for a few receivers next to edges, and not for sphere lights.
@@ -162,6 +168,7 @@ class DepthComplexity(Technique):
     coverage: str = _DEPTH_COMPLEXITY["coverage"]
     spread: str = _DEPTH_COMPLEXITY["spread"]
     tile: int = _DEPTH_COMPLEXITY["tile"]
+    attenuation: str = _DEPTH_COMPLEXITY["attenuation"]
     evaluation: str = _DEPTH_COMPLEXITY["evaluation"]
     initial_counts: str = _DEPTH_COMPLEXITY["initial_counts"]
     counters: str = _DEPTH_COMPLEXITY["counters"]

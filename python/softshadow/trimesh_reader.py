@@ -34,12 +34,12 @@ def read(source: object) -> tuple[list[Mesh], list[str]]:
 def _mesh(source: trimesh.Trimesh, name: str, world_from_mesh: NDArray[np.float64], notes: list[str]) -> Mesh:
     vertices = np.array(source.vertices, dtype=np.float64, subok=False)
     moved = vertices @ world_from_mesh[:3, :3].T + world_from_mesh[:3, 3]
-    colors = _base_color(source.visual, name, notes)
-    return Mesh(name=name, vertices=moved, faces=np.array(source.faces, subok=False), **colors)
+    material = _material(source.visual, name, notes)
+    return Mesh(name=name, vertices=moved, faces=np.array(source.faces, subok=False), **material)
 
 
-def _base_color(visual: Any, name: str, notes: list[str]) -> dict[str, Any]:
-    """The one colour of a mesh; trimesh keeps linear colours as bytes, as it reads and writes glTF."""
+def _material(visual: Any, name: str, notes: list[str]) -> dict[str, Any]:
+    """The one colour of a mesh, and its opacity; trimesh keeps linear colours as bytes, as it reads and writes glTF."""
     if visual.kind == "texture":
         material = visual.material
         images = (getattr(material, name, None) for name in ("baseColorTexture", "image"))
@@ -47,8 +47,11 @@ def _base_color(visual: Any, name: str, notes: list[str]) -> dict[str, Any]:
             notes.append(f"textures of '{name}' left out")
         if getattr(material, "baseColorFactor", material.main_color) is None:
             return {"base_color": (1.0, 1.0, 1.0)}
-        colors = np.asarray(material.main_color)[np.newaxis]
-    elif visual.kind in ("face", "vertex"):
+        color = np.asarray(material.main_color) / 255.0
+        # Alpha is opacity where it blends, as in glTF, and means nothing elsewhere.
+        opacity = {"opacity": float(color[3])} if getattr(material, "alphaMode", None) == "BLEND" else {}
+        return {"base_color": tuple(color[:3].tolist()), **opacity}
+    if visual.kind in ("face", "vertex"):
         colors = np.unique(visual.face_colors if visual.kind == "face" else visual.vertex_colors, axis=0)
     else:
         return {}

@@ -45,7 +45,8 @@ class Visibility:
     triangles : int64, (H, W) or (points,), or None
         Triangle ids, counted through the scene's meshes; -1 where there is none.
     visible_samples : bool, the shape of one value's array with a last axis of samples, or None
-        Which light samples of the last pass are visible, in the order of :func:`light_points`.
+        Which light samples of the last pass are visible, in the order of :func:`light_points`: those to which anything
+        passes, so that semi-opaque triangles alone hide none.
     info : dict
         What made the result: adapter, technique, settings, times and bytes.
     """

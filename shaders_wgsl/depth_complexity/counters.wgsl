@@ -51,6 +51,19 @@ fn counters_add(counters: Counters, ones: vec2<u32>, twos: vec2<u32>, fours: vec
     return c;
 }
 
+// Adds a change of up to seven layers to the samples of a mask.
+fn counters_change(counters: Counters, mask: vec2<u32>, change: i32) -> Counters {
+    let size = u32(abs(change));
+    let bit = vec3<u32>(size & 1u, (size >> 1u) & 1u, (size >> 2u) & 1u) * 0xffffffffu;
+    let borrow = vec2<u32>(select(0u, 0xffffffffu, change < 0));
+    return counters_add(counters, mask & vec2<u32>(bit.x), mask & vec2<u32>(bit.y), mask & vec2<u32>(bit.z), borrow);
+}
+
+// How much a change counts towards what counters hold: more faces than seven at one edge as more than any of them does.
+fn most_change(change: i32) -> u32 {
+    return select(u32(abs(change)), LARGEST_COUNT + 1u, abs(change) > 7);
+}
+
 fn counters_nonzero(c: Counters) -> vec2<u32> {
     return c.p0 | c.p1 | c.p2 | c.p3 | c.p4 | c.p5 | c.p6 | c.p7 | c.p8 | c.p9 | c.p10 | c.p11;
 }

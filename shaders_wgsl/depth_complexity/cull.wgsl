@@ -58,7 +58,7 @@ fn side_of_all(face: IncidentFace, shaft: Shaft) -> i32 {
 fn entry_of(e: u32, shaft: Shaft) -> u32 {
     let edge = edge_of(edges[e]);
     let a = incident_face_of(incident_faces[edge.first_incidence]);
-    let b = incident_face_of(incident_faces[edge.first_incidence + edge.incidence_count - 1u]);
+    let b = incident_face_of(incident_faces[edge.first_incidence + face_count(edge) - 1u]);
     let side_a = turned(side_of_all(a, shaft), a);
     let side_b = turned(side_of_all(b, shaft), b);
     let is_pair = edge.incidence_count == 2u;

@@ -5,6 +5,7 @@
 //#import depth_complexity/horizon.wgsl
 //#import depth_complexity/coverage.wgsl
 //#import depth_complexity/counters.wgsl
+//#import depth_complexity/attenuation.wgsl
 //#import depth_complexity/area.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/walk.wgsl
@@ -22,9 +23,12 @@
 @group(0) @binding(9) var<storage, read> lists: array<u32>;
 @group(0) @binding(11) var<storage, read_write> counts: ListCounts;
 @group(0) @binding(10) var<storage, read_write> areas: array<u32>;
-@group(0) @binding(15) var<uniform> coverage_table: CoverageTable;
+@group(0) @binding(17) var<uniform> coverage_table: CoverageTable;
 @group(0) @binding(12) var<uniform> sampling: Sampling;
 @group(0) @binding(13) var<uniform> sample_sets: SampleSets;
+@group(0) @binding(14) var<uniform> attenuation_scale: AttenuationScale;
+@group(0) @binding(15) var<storage, read> triangle_attenuation: array<u32>;
+@group(0) @binding(16) var<storage, read_write> sample_transmittance: array<f32>;
 
 struct GroupSamples {
     at: array<vec4<f32>, 64>,
@@ -346,24 +350,27 @@ fn crossed_own(c: Crossing, view: FrameView, first: u32, last: u32, k: u32) -> u
     return select(0u, 1u << (k & 31u), crosses(c, own_sample(view, min(first + k, last))));
 }
 
+fn crossed_own_samples(c: Crossing, view: FrameView, first: u32, count: u32) -> vec2<u32> {
+    let last = first + count - 1u;
+    var mask = vec2<u32>(0u);
+    for (var k = 0u; k < count; k += 8u) {
+        let found = crossed_own(c, view, first, last, k) | crossed_own(c, view, first, last, k + 1u)
+            | crossed_own(c, view, first, last, k + 2u) | crossed_own(c, view, first, last, k + 3u)
+            | crossed_own(c, view, first, last, k + 4u) | crossed_own(c, view, first, last, k + 5u)
+            | crossed_own(c, view, first, last, k + 6u) | crossed_own(c, view, first, last, k + 7u);
+        mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), k >= 32u);
+    }
+    return mask;
+}
+
 fn fold_own(before: Sums, view: FrameView, at: u32, changes: Changes, first: u32, count: u32) -> Sums {
     var sums = before;
     var waiting = changes.edges;
-    let last = first + count - 1u;
     while (waiting != 0u) {
-        let edge = firstTrailingBit(waiting);
+        let k = firstTrailingBit(waiting);
         waiting &= waiting - 1u;
-        let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + edge])]));
-        let c = crossing_of(image);
-        var mask = vec2<u32>(0u);
-        for (var k = 0u; k < count; k += 8u) {
-            let found = crossed_own(c, view, first, last, k) | crossed_own(c, view, first, last, k + 1u)
-                | crossed_own(c, view, first, last, k + 2u) | crossed_own(c, view, first, last, k + 3u)
-                | crossed_own(c, view, first, last, k + 4u) | crossed_own(c, view, first, last, k + 5u)
-                | crossed_own(c, view, first, last, k + 6u) | crossed_own(c, view, first, last, k + 7u);
-            mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), k >= 32u);
-        }
-        sums = folded(sums, changes, edge, image.left, mask);
+        let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + k])]));
+        sums = folded(sums, changes, k, image.left, crossed_own_samples(crossing_of(image), view, first, count));
     }
     return sums;
 }
@@ -563,4 +570,138 @@ fn fold_own_samples_areas(
         fold.chunk = lists[at];
     }
     finish_area(fold, area, below_own(fold));
+}
+
+// Layers, opaque and in units of attenuation.
+struct Layers {
+    opaque: i32,
+    attenuation: i32,
+}
+
+// As `weight`, of both kinds of layers.
+fn weight_of_both(view: FrameView, edge: OccluderEdge, triangle: u32) -> Layers {
+    var sum = Layers(0, 0);
+    for (var k = 0u; k < face_count(edge); k++) {
+        let face = incident_face_of(incident_faces[edge.first_incidence + k]);
+        let units = triangle_attenuation[face.reference >> 1u];
+        let turn = turned(side_of_plane(face.normal, face.point, face.flatness, view.position), face);
+        let left = select(turn, 0, (face.reference >> 1u) == triangle);
+        sum.opaque += select(0, left, units == OPAQUE);
+        sum.attenuation += select(left * i32(units), 0, units == OPAQUE);
+    }
+    return sum;
+}
+
+// The edges of a chunk that may lie between a receiver and the light, one bit each.
+fn before_light(view: FrameView, at: u32) -> u32 {
+    let end = lists[at + 1u];
+    var found = 0u;
+    for (var k = 0u; k < end; k++) {
+        let image = image_before(view, edge_of(edges[listed_edge(lists[at + 2u + k])]));
+        found |= select(0u, 1u << k, image_matters(light_frame, image));
+    }
+    return found;
+}
+
+// What semi-opaque layers add up to beside the counters of a fold.
+struct Attenuated {
+    attenuation: Attenuation,
+    most: u32,              // by how much it can have changed at most
+}
+
+fn attenuated_by(before: Attenuated, amount: i32, faces: u32, mask: vec2<u32>) -> Attenuated {
+    let changes = (mask.x | mask.y) != 0u && amount != 0;
+    let size = select(u32(abs(amount)), LARGEST_ATTENUATION + 1u, faces > MOST_ATTENUATING_FACES);
+    return Attenuated(
+        attenuation_add(before.attenuation, mask, amount),
+        min(before.most, LARGEST_ATTENUATION + 1u) + select(0u, size, changes),
+    );
+}
+
+fn with_layers(before: Sums, change: i32, mask: vec2<u32>) -> Sums {
+    var sums = before;
+    sums.counters = counters_change(sums.counters, mask, change);
+    sums.changes += most_change(change);
+    return sums;
+}
+
+fn finish_attenuated(fold: Fold, attenuated: Attenuated, below: vec2<u32>) {
+    let hidden = counters_nonzero(fold.sums.counters) | below;
+    let at = fold.slot.receiver * light_frame.sample_count + 64u * fold_settings.group;
+    for (var k = 0u; k < fold.count; k++) {
+        let passes = passed(attenuation_scale, attenuation_of(attenuated.attenuation, k));
+        sample_transmittance[at + k] = select(passes, 0.0, digit_of(hidden, k, 0u) != 0u);
+    }
+    if (attenuated.most > LARGEST_ATTENUATION) {
+        atomicAdd(&counts.overflowed, 1u);
+    }
+    if (fold.sums.changes > LARGEST_COUNT || fold.chunk != 0u || !has_steps_left()) {
+        atomicAdd(&counts.unfinished, 1u);
+    }
+}
+
+// As `fold`, where some faces are semi-opaque. Samples answer: an area under a layer that lets light through is no visibility.
+@compute @workgroup_size(64)
+fn fold_attenuated(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
+    }
+    var fold = begin(task);
+    var sums = Attenuated(attenuation_at(fold.slot.attenuation), u32(abs(fold.slot.attenuation)));
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        var waiting = before_light(fold.view, at);
+        fold.steps += 4u * lists[at + 1u];
+        while (waiting != 0u) {
+            let edge = edge_of(edges[listed_edge(lists[at + 2u + firstTrailingBit(waiting)])]);
+            waiting &= waiting - 1u;
+            let weight = weight_of_both(fold.view, edge, fold.receiver.triangle);
+            let image = image_before(fold.view, edge);
+            let mask = crossed_standing(crossing_of(image));
+            let sign = select(1, -1, image.left);
+            fold.sums = with_layers(fold.sums, weight.opaque * sign, mask);
+            sums = attenuated_by(sums, weight.attenuation * sign, face_count(edge), mask);
+            fold.steps += 4u + face_count(edge);
+        }
+        fold.chunk = lists[at];
+    }
+    finish_attenuated(fold, sums, below_standing(fold));
+}
+
+@compute @workgroup_size(64)
+fn fold_attenuated_own_samples(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let task = task_of(workgroup, workgroups, lane);
+    if (!task.exists) {
+        return;
+    }
+    var fold = begin(task);
+    let first = first_own_sample(fold);
+    var sums = Attenuated(attenuation_at(fold.slot.attenuation), u32(abs(fold.slot.attenuation)));
+    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+        let at = chunk_at(fold.chunk);
+        var waiting = before_light(fold.view, at);
+        fold.steps += 4u * lists[at + 1u];
+        while (waiting != 0u) {
+            let edge = edge_of(edges[listed_edge(lists[at + 2u + firstTrailingBit(waiting)])]);
+            waiting &= waiting - 1u;
+            let weight = weight_of_both(fold.view, edge, fold.receiver.triangle);
+            let image = image_before(fold.view, edge);
+            let mask = crossed_own_samples(crossing_of(image), fold.view, first, fold.count);
+            let sign = select(1, -1, image.left);
+            fold.sums = with_layers(fold.sums, weight.opaque * sign, mask);
+            sums = attenuated_by(sums, weight.attenuation * sign, face_count(edge), mask);
+            fold.steps += 4u + face_count(edge) + fold.count / 8u;
+        }
+        fold.chunk = lists[at];
+    }
+    finish_attenuated(fold, sums, below_own(fold));
 }

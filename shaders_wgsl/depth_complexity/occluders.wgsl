@@ -14,7 +14,14 @@ struct OccluderEdge {
     low: vec3<f32>,
     first_incidence: u32,
     high: vec3<f32>,
-    incidence_count: u32,
+    incidence_count: u32,  // with UNEQUAL_FACES where these differ in opacity
+}
+
+// Set in the count of an edge's faces: whichever sides its faces are on, it can change what passes, and is never left out.
+const UNEQUAL_FACES: u32 = 0x80000000u;
+
+fn face_count(edge: OccluderEdge) -> u32 {
+    return edge.incidence_count & ~UNEQUAL_FACES;
 }
 
 // A face at an edge, with what decides its side.

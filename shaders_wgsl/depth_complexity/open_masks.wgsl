@@ -40,7 +40,7 @@ fn open_masks(@builtin(global_invocation_id) invocation: vec3<u32>) {
         blocked[index * words + word] = mask;
         visible += here - countOneBits(mask & (0xffffffffu >> (32u - here)));
     }
-    slots[at] = Slot(index, 0u, select(NO_VIEW, 0, sees && visible > 0u), 0u);
+    slots[at] = Slot(index, 0u, select(NO_VIEW, 0, sees && visible > 0u), 0);
 }
 
 // The same where every receiver has its own set of samples.
@@ -71,5 +71,5 @@ fn open_masks_of_sets(@builtin(global_invocation_id) invocation: vec3<u32>) {
         blocked[index * words + word] = mask;
         visible += here - countOneBits(mask & (0xffffffffu >> (32u - here)));
     }
-    slots[at] = Slot(index, 0u, select(NO_VIEW, 0, sees && visible > 0u), 0u);
+    slots[at] = Slot(index, 0u, select(NO_VIEW, 0, sees && visible > 0u), 0);
 }

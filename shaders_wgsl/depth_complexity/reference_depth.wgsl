@@ -9,6 +9,7 @@
 //#import depth_complexity/clusters.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/walk.wgsl
+//#import depth_complexity/attenuation.wgsl
 
 @group(0) @binding(0) var<uniform> slice: Slice;
 @group(0) @binding(1) var<uniform> light_frame: LightFrame;
@@ -21,6 +22,7 @@
 @group(0) @binding(8) var<storage, read_write> blocked: array<u32>;
 @group(0) @binding(10) var<uniform> cluster_range: ClusterRange;
 @group(0) @binding(9) var<storage, read_write> counts: ListCounts;
+@group(0) @binding(11) var<storage, read> triangle_attenuation: array<u32>;
 
 // Rounding, with room to spare.
 const SLACK: f32 = 4e-6;
@@ -154,4 +156,63 @@ fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
     for (var word = 0u; word < select(0u, words, depth != 0); word++) {
         blocked[slot.receiver * words + word] = 0xffffffffu;
     }
+}
+
+// As `reference_depth`, of opaque and semi-opaque faces apart; what that makes of the samples is another pass.
+@compute @workgroup_size(64)
+fn reference_depth_attenuated(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x >= slice.count) {
+        return;
+    }
+    let item = slice.first + invocation.x;
+    let tile_count = cluster_range.tile_count;
+    let tile = scattered(item / TILE, tile_count);
+    let at = tile * TILE + item % TILE;
+    if (at >= cluster_range.receiver_count) {
+        return;
+    }
+    let slot = slots[at];
+    let bundle = (2u * tile + slot.part) * BUNDLES + (at % TILE) / BUNDLE;
+    var chunk = select(first_faces[bundle], 0u, slot.depth == NO_VIEW);
+    if (chunk == 0u) {
+        return;
+    }
+    let receiver = receivers[slot.receiver];
+    let view = frame_view(light_frame, receiver.position);
+    let base = first_chunk_word(tile_count);
+    var depth = 0;
+    var attenuation = 0;
+    var most = 0u;
+    var steps = 0u;
+    while (chunk != 0u && steps < MOST_STEPS) {
+        let here = base + chunk * CHUNK;
+        let end = lists[here + 1u];
+        // Drivers on the CPU run both sides of a branch, and skip loops only.
+        var waiting = 0u;
+        for (var k = 0u; k < end; k++) {
+            let face = face_of(faces[lists[here + 2u + k]]);
+            waiting |= select(0u, 1u << k, (face.triangle != receiver.triangle) & !turns_away(view, face));
+        }
+        steps += 2u * end + 5u * countOneBits(waiting);
+        while (waiting != 0u) {
+            let face = face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]);
+            let units = triangle_attenuation[face.triangle];
+            let times = cover(view, face);
+            depth += select(0, times, units == OPAQUE);
+            if (units != OPAQUE && times != 0 && most <= LARGEST_ATTENUATION) {
+                attenuation += times * i32(units);
+                most += units;
+            }
+            waiting &= waiting - 1u;
+        }
+        chunk = lists[here];
+    }
+    if (chunk != 0u || !has_steps_left()) {
+        atomicAdd(&counts.unfinished, 1u);
+    }
+    if (most > LARGEST_ATTENUATION) {
+        atomicAdd(&counts.overflowed, 1u);
+    }
+    slots[at].depth = depth;
+    slots[at].attenuation = attenuation;
 }

@@ -16,9 +16,9 @@ struct TilePart {
 // A receiver in the order of the tiles.
 struct Slot {
     receiver: u32,
-    part: u32,       // of its tile
-    depth: i32,      // of the reference point, or NO_VIEW
-    reserved: u32,
+    part: u32,        // of its tile
+    depth: i32,       // of the reference point, or NO_VIEW
+    attenuation: i32, // of the reference point, in units
 }
 
 // What the passes over the lists of edges report.
@@ -28,9 +28,9 @@ struct ListCounts {
     edges: atomic<u32>,           // in all lists
     unfinished: atomic<u32>,      // receivers for which a list had no room, a walk no end, or a counter no bit
     by_area: atomic<u32>,         // receivers that areas answered
+    overflowed: atomic<u32>,      // receivers with more attenuation than a sum holds
     reserved0: u32,
     reserved1: u32,
-    reserved2: u32,
 }
 
 // A tile's bundles: runs of 8 receivers, whose shafts are much thinner than the tile's.

@@ -35,6 +35,7 @@ struct Shading {
 @group(0) @binding(10) var<storage, read> decided: array<u32>;
 @group(0) @binding(11) var<storage, read> blocked: array<u32>;
 @group(0) @binding(12) var<storage, read> visibility: array<f32>;
+@group(0) @binding(13) var<storage, read> sample_transmittance: array<f32>;
 
 const INVERSE_PI: f32 = 0.31830987;
 
@@ -91,6 +92,35 @@ fn integrated(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let mask = blocked[index * sampling.words + sample / 32u];
         let hidden = (mask & (1u << (sample % 32u))) != 0u;
         sum += select(sample_contribution(receiver, view, first + sample, material), vec3<f32>(0.0), hidden);
+    }
+    add_color(index, sum);
+}
+
+// As `integrated`, of samples to which a part of the light may pass.
+@compute @workgroup_size(64)
+fn integrated_attenuated(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    if (invocation.x >= slice.count) {
+        return;
+    }
+    let index = slice.first + invocation.x;
+    let receiver = receivers[index];
+    if (receiver.kind == RECEIVER_NONE) {
+        color[index] = vec4<f32>(0.0);
+        return;
+    }
+    let material = materials[triangle_materials[receiver.triangle]];
+    let view = light_view(light, receiver.position);
+    let known = decided[index];
+    // Where only probes were traced they agree, and speak for all samples.
+    let only_probes = known < sampling.count && known > 0u;
+    let at = index * sampling.count;
+    let first = first_sample(sampling, index);
+    var sum = vec3<f32>(0.0);
+    for (var sample = 0u; sample < sampling.count; sample++) {
+        let passes = sample_transmittance[at + select(sample, 0u, only_probes)];
+        if (passes > 0.0) {
+            sum += sample_contribution(receiver, view, first + sample, material) * passes;
+        }
     }
     add_color(index, sum);
 }

@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 use softshadow_engine::{AdapterInfo, PassTime, RunReport};
+use softshadow_scene::{LocalScene, Scene};
 use softshadow_techniques::Technique;
+use softshadow_techniques::depth_complexity::Evaluation;
 
 /// Adapter, technique, cost, and how well the values are known.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -46,7 +48,9 @@ pub struct Info {
     pub zero_area_triangles: usize,
     /// Triangles that vanish in local float32, left out.
     pub unresolved_triangles: usize,
-    /// What the scene's file holds that is not modelled, and settings that the call could not follow.
+    /// Triangles of opacity 0, left out.
+    pub invisible_triangles: usize,
+    /// What the scene's file holds that is not modelled, what the technique does not, and settings that the call could not follow.
     pub notes: Vec<String>,
     /// `statistical`: values have a standard error. `none`: nothing is known about their error.
     pub error_kind: &'static str,
@@ -80,4 +84,18 @@ impl Info {
         self.bytes = run.bytes;
         self.submissions = run.submissions;
     }
+}
+
+/// What a result does not model of its scene, and settings that a call cannot follow where it answers all the same, in words.
+pub(crate) fn notes(scene: &Scene, technique: &Technique, local: &LocalScene) -> Vec<String> {
+    let semi_opaque = local.opacities.iter().filter(|opacity| **opacity < 1.0).count();
+    let taken = (semi_opaque > 0 && matches!(technique, Technique::HardShadowMap(_)))
+        .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: hard_shadow_map knows no others"));
+    let by_samples = match technique {
+        Technique::DepthComplexity(settings) if settings.exact_area && settings.evaluation == Evaluation::Blended => {
+            Some("exact_area: evaluation 'blended' answers by samples alone".into())
+        }
+        _ => None,
+    };
+    scene.notes().iter().cloned().chain(taken).chain(by_samples).collect()
 }

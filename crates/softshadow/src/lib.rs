@@ -39,7 +39,9 @@ pub use softshadow_scene::{
     SamplePattern, SampleSpread, Scene, SceneError, UpAxis, look_at, procedural, scene_file,
 };
 pub use softshadow_techniques::depth_complexity::{Counters, Coverage, Evaluation, InitialCounts, Silhouettes};
-pub use softshadow_techniques::{DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError};
+pub use softshadow_techniques::{
+    Attenuation, DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError,
+};
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};
 
 /// Asked between pieces of work with what is done and what there is in all; returning `false` stops the call.

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use softshadow_engine::{RunReport, StageReport, Timing};
 use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
+use softshadow_techniques::depth_complexity::LIST_COUNTS;
 use softshadow_techniques::depth_complexity::blended::{LARGEST_COUNTS, Largest};
-use softshadow_techniques::depth_complexity::{Evaluation, LIST_COUNTS};
 use softshadow_techniques::parts::VISIBILITY;
 use softshadow_techniques::parts::interleaving::NOISY_BYTES;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
@@ -20,7 +20,7 @@ use softshadow_techniques::{
 use crate::Progress;
 use crate::context::{Context, Prepared};
 use crate::error::Error;
-use crate::info::{Info, Preparation};
+use crate::info::{Info, Preparation, notes};
 
 /// What a caller may want beside the values, and how much memory a call may take.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +31,8 @@ pub struct Options {
     pub standard_error: bool,
     /// Return the receivers as every technique used them.
     pub receivers: bool,
-    /// Return which samples were blocked, of the last progressive pass. Only techniques that trace every sample have them.
+    /// Return which samples were blocked, of the last progressive pass: those to which nothing passes. Only techniques that trace
+    /// every sample have them.
     pub sample_masks: bool,
     /// How passes are timed.
     pub timing: Timing,
@@ -85,7 +86,8 @@ pub struct Placed {
     pub triangles: Vec<i64>,
 }
 
-/// One bit a sample, set where the sample is blocked.
+/// One bit a sample, set where the sample is blocked: where nothing passes to it. Semi-opaque triangles alone block none, unless what
+/// passes them is nothing in float32.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SampleMasks {
     /// Words of 32 bits a receiver; sample `i` is bit `i % 32` of word `i / 32`.
@@ -151,6 +153,7 @@ pub(crate) fn run(
     let wants_occluders = technique.wants_occluders() && receivers.count() > 0;
     let hidden: &[Light] = if wants_occluders { lights } else { &[] };
     let Prepared { contents, occluders, preparation } = context.prepare(scene, receivers, hidden)?;
+    technique.check_scene(&contents)?;
     let channels = if lights.iter().any(|l| l.texture().is_some()) { 3 } else { 1 };
     let mut collector = Collector::new(context, scene, lights, receivers, technique, options, &contents, channels);
     collector.result.info.preparation = preparation;
@@ -159,15 +162,7 @@ pub(crate) fn run(
         return Ok(collector.finish(RunReport::default()));
     }
     let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
-    let most = receivers_per_block(
-        technique,
-        options,
-        channels,
-        picture.is_some(),
-        &host,
-        source.row(),
-        contents.local.sub_scenes.len(),
-    )?;
+    let most = receivers_per_block(technique, options, channels, picture.is_some(), &host, source.row(), &contents)?;
     collector.result.info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
     collector.result.info.triangles_behind = occluders.iter().map(|o| o.triangles_behind).sum();
     let program = VisibilityProgram {
@@ -206,6 +201,12 @@ pub(crate) fn run(
         }
         on_progress(done, total)
     })?;
+    if collector.overflowed > 0 {
+        let count = collector.overflowed;
+        return Err(Error::Gpu(format!(
+            "{count} receivers have more semi-opaque layers before them than sums of depth_complexity hold; use ray_traced"
+        )));
+    }
     if collector.unfinished > 0 {
         let count = collector.unfinished;
         return Err(Error::Gpu(match technique {
@@ -244,9 +245,10 @@ fn receivers_per_block(
     picture: bool,
     host: &softshadow_plan::Host,
     row: usize,
-    sub_scenes: usize,
+    scene: &SceneContents,
 ) -> Result<usize, Error> {
-    let technique_bytes = technique.bytes_per_receiver(channels as u64, sub_scenes as u64);
+    let sub_scenes = scene.local.sub_scenes.len() as u64;
+    let technique_bytes = technique.bytes_per_receiver(channels as u64, sub_scenes, scene.opacity.is_some());
     // Rays of a block are bounded, so that a dispatch over them ends in time and a caller can stop between blocks.
     let most_for_rays = RAYS_PER_BLOCK / u64::from(technique.samples()).max(1);
     // The receiver, the point it came from, and the picture's colour, before and after it is averaged.
@@ -269,16 +271,6 @@ fn receivers_per_block(
     Ok(most)
 }
 
-/// Settings that a call cannot follow, where it answers all the same.
-fn technique_notes(technique: &Technique) -> Option<String> {
-    match technique {
-        Technique::DepthComplexity(settings) if settings.exact_area && settings.evaluation == Evaluation::Blended => {
-            Some("exact_area: evaluation 'blended' answers by samples alone".into())
-        }
-        _ => None,
-    }
-}
-
 /// Puts the blocks' outputs where they belong.
 struct Collector<'a> {
     result: Visibility,
@@ -287,6 +279,8 @@ struct Collector<'a> {
     caller_ids: &'a [u32],
     /// Rays that the driver cut short.
     unfinished: u64,
+    /// Receivers with more attenuation than a sum holds.
+    overflowed: u64,
     /// Receivers that no wedge is sure to reach.
     astray: u64,
 }
@@ -330,7 +324,8 @@ impl<'a> Collector<'a> {
             blocks: 0,
             zero_area_triangles: contents.local.dropped.zero_area,
             unresolved_triangles: contents.local.dropped.below_resolution,
-            notes: scene.notes().iter().cloned().chain(technique_notes(technique)).collect(),
+            invisible_triangles: contents.local.dropped.invisible,
+            notes: notes(scene, technique, &contents.local),
             error_kind: if has_error { "statistical" } else { "none" },
             standard_error: None,
             plan: String::new(),
@@ -360,7 +355,8 @@ impl<'a> Collector<'a> {
             info,
         };
         let frame = contents.local.frame;
-        Self { result, colors: Vec::new(), frame, caller_ids: &contents.local.caller_ids, unfinished: 0, astray: 0 }
+        let caller_ids = &contents.local.caller_ids;
+        Self { result, colors: Vec::new(), frame, caller_ids, unfinished: 0, overflowed: 0, astray: 0 }
     }
 
     fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Vec<u8>>) {
@@ -381,6 +377,7 @@ impl<'a> Collector<'a> {
             self.result.info.silhouette_edges += u64::from(counts[2]);
             self.unfinished += u64::from(counts[3]);
             self.result.info.area_receivers += u64::from(counts[4]);
+            self.overflowed += u64::from(counts[5]);
         }
         if let Some(bytes) = outputs.get(LARGEST_COUNTS) {
             let largest: Vec<Largest> = bytemuck::pod_collect_to_vec(bytes);

@@ -2,15 +2,24 @@
 
 use std::path::PathBuf;
 
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use softshadow::{Error, Material, Mesh};
 
 use crate::arrays::rows;
 use crate::detached::detached;
 
-/// Name, flat vertices, flat faces, base colour, roughness, specular.
-type FlatMesh<'py> = (String, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<u32>>, [f32; 3], f32, f32);
+/// Name, flat vertices, flat faces, base colour, roughness, specular, opacity, and that of each triangle where they differ.
+type FlatMesh<'py> = (
+    String,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<u32>>,
+    [f32; 3],
+    f32,
+    f32,
+    f32,
+    Option<Bound<'py, PyArray1<f32>>>,
+);
 
 /// A checked scene.
 #[pyclass(frozen, module = "softshadow._core")]
@@ -18,7 +27,16 @@ pub(crate) struct Scene(pub(crate) softshadow::Scene);
 
 /// One mesh as Python gives it.
 #[derive(FromPyObject)]
-struct MeshArrays<'py>(String, PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, u32>, [f32; 3], f32, f32);
+struct MeshArrays<'py>(
+    String,
+    PyReadonlyArray2<'py, f64>,
+    PyReadonlyArray2<'py, u32>,
+    [f32; 3],
+    f32,
+    f32,
+    f32,
+    Option<PyReadonlyArray1<'py, f32>>,
+);
 
 #[pymethods]
 impl Scene {
@@ -26,14 +44,20 @@ impl Scene {
     fn new(py: Python<'_>, meshes: Vec<MeshArrays<'_>>, notes: Vec<String>) -> PyResult<Self> {
         let copies = meshes
             .into_iter()
-            .map(|MeshArrays(name, vertices, faces, base_color, roughness, specular)| {
-                let material = Material { base_color, roughness, specular };
-                Ok((name, rows(&vertices)?, rows(&faces)?, material))
+            .map(|MeshArrays(name, vertices, faces, base_color, roughness, specular, opacity, opacities)| {
+                let material = Material { base_color, roughness, specular, opacity };
+                let opacities = opacities.map(|each| each.as_slice().map(<[f32]>::to_vec)).transpose()?;
+                Ok((name, rows(&vertices)?, rows(&faces)?, material, opacities))
             })
             .collect::<PyResult<Vec<_>>>()?;
         detached(py, || {
-            let meshes =
-                copies.into_iter().map(|(name, vertices, faces, material)| Mesh::new(name, vertices, faces, material));
+            let meshes = copies.into_iter().map(|(name, vertices, faces, material, opacities)| {
+                let mesh = Mesh::new(name, vertices, faces, material)?;
+                match opacities {
+                    Some(each) => mesh.with_opacities(each),
+                    None => Ok(mesh),
+                }
+            });
             let scene = meshes.collect::<Result<_, _>>().and_then(softshadow::Scene::new).map_err(Error::Scene)?;
             Ok(Self(notes.into_iter().fold(scene, softshadow::Scene::with_note)))
         })
@@ -47,10 +71,11 @@ impl Scene {
     /// Copies of all meshes.
     fn meshes<'py>(&self, py: Python<'py>) -> Vec<FlatMesh<'py>> {
         let flat = |mesh: &Mesh| {
-            let Material { base_color, roughness, specular } = mesh.material;
+            let Material { base_color, roughness, specular, opacity } = mesh.material;
             let vertices = mesh.vertices.as_flattened().to_vec().into_pyarray(py);
             let faces = mesh.triangles.as_flattened().to_vec().into_pyarray(py);
-            (mesh.name.clone(), vertices, faces, base_color, roughness, specular)
+            let opacities = (!mesh.opacities.is_empty()).then(|| mesh.opacities.clone().into_pyarray(py));
+            (mesh.name.clone(), vertices, faces, base_color, roughness, specular, opacity, opacities)
         };
         self.0.meshes().iter().map(flat).collect()
     }
@@ -80,9 +105,9 @@ impl Scene {
     }
 }
 
-/// Base colour, roughness and specular of a mesh that has no material.
+/// Base colour, roughness, specular and opacity of a mesh that has no material.
 #[pyfunction]
-pub(crate) fn default_material() -> ([f32; 3], f32, f32) {
-    let Material { base_color, roughness, specular } = Material::default();
-    (base_color, roughness, specular)
+pub(crate) fn default_material() -> ([f32; 3], f32, f32, f32) {
+    let Material { base_color, roughness, specular, opacity } = Material::default();
+    (base_color, roughness, specular, opacity)
 }

@@ -41,6 +41,8 @@ pub struct Dropped {
     pub zero_area: usize,
     /// Triangles whose corners coincide once rounded to local float32.
     pub below_resolution: usize,
+    /// Triangles of opacity 0: nobody sees them, and they hide nothing.
+    pub invisible: usize,
 }
 
 /// A scene in its local frame.
@@ -60,6 +62,8 @@ pub struct LocalScene {
     pub vertex_ids: Vec<[u32; 3]>,
     /// One material a mesh.
     pub materials: Vec<Material>,
+    /// For each local triangle its opacity; empty where all are opaque.
+    pub opacities: Vec<f32>,
     /// Triangles that were left out.
     pub dropped: Dropped,
 }
@@ -75,7 +79,8 @@ impl LocalScene {
     pub fn new(scene: &Scene, frame_points: Option<([f64; 3], [f64; 3])>, max_binding_bytes: u64) -> Self {
         let frame = LocalFrame::around(occluder_bounds(scene).or(frame_points));
         let (mut rows, dropped) = placed(scene, &frame);
-        rows.sort_by(|a, b| triangle_order(&a.corners, &b.corners));
+        // Triangles in one place stand in the order of their opacities: what passes them is multiplied in this order.
+        rows.sort_by(|a, b| triangle_order(&a.corners, &b.corners).then(a.opacity.total_cmp(&b.opacity)));
         let mut built = Self {
             frame,
             extent: extent(&rows),
@@ -84,10 +89,14 @@ impl LocalScene {
             mesh_ids: Vec::with_capacity(rows.len()),
             vertex_ids: Vec::with_capacity(rows.len()),
             materials: scene.meshes().iter().map(|m| m.material).collect(),
+            opacities: Vec::new(),
             dropped,
         };
         for chunk in rows.chunks(triangles_per_binding(max_binding_bytes)) {
             built.append(chunk);
+        }
+        if built.opacities.iter().all(|opacity| *opacity >= 1.0) {
+            built.opacities = Vec::new();
         }
         built
     }
@@ -96,6 +105,12 @@ impl LocalScene {
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.caller_ids.len()
+    }
+
+    /// Opacity of a triangle.
+    #[must_use]
+    pub fn opacity(&self, triangle: usize) -> f32 {
+        self.opacities.get(triangle).copied().unwrap_or(1.0)
     }
 
     /// All triangles in order, as three positions each.
@@ -114,6 +129,7 @@ impl LocalScene {
             self.caller_ids.push(row.caller_id);
             self.mesh_ids.push(row.mesh_id);
             self.vertex_ids.push(row.vertex_ids);
+            self.opacities.push(row.opacity);
         }
         self.sub_scenes.push(SubScene { first_triangle, corners, nodes: bvh.nodes, built_cost: bvh.built_cost });
     }
@@ -128,6 +144,7 @@ pub(crate) struct Row {
     pub(crate) vertex_ids: [u32; 3],
     pub(crate) caller_id: u32,
     pub(crate) mesh_id: u32,
+    pub(crate) opacity: f32,
 }
 
 /// The triangles of a scene in a frame, in the caller's order, and what is left out of them.
@@ -139,7 +156,7 @@ pub(crate) fn placed(scene: &Scene, frame: &LocalFrame) -> (Vec<Row>, Dropped) {
         // Adding +0 turns −0 into +0: equal positions must be equal bits.
         let rounded = |v: &[f64; 3]| (frame.local_from_world(*v).as_vec3() + glam::Vec3::ZERO).to_array();
         let local: Vec<[f32; 3]> = mesh.vertices.iter().map(rounded).collect();
-        for triangle in &mesh.triangles {
+        for (index, triangle) in mesh.triangles.iter().enumerate() {
             let id = caller_id;
             caller_id += 1;
             if is_flat(triangle.map(|v| DVec3::from(mesh.vertices[v as usize]))) {
@@ -153,7 +170,12 @@ pub(crate) fn placed(scene: &Scene, frame: &LocalFrame) -> (Vec<Row>, Dropped) {
                 dropped.below_resolution += 1;
                 continue;
             }
-            rows.push(Row { corners, vertex_ids, caller_id: id, mesh_id: mesh_id as u32 });
+            let opacity = mesh.opacity(index);
+            if opacity <= 0.0 {
+                dropped.invisible += 1;
+                continue;
+            }
+            rows.push(Row { corners, vertex_ids, caller_id: id, mesh_id: mesh_id as u32, opacity });
         }
         first_vertex += mesh.vertices.len() as u32;
     }
@@ -264,14 +286,43 @@ mod tests {
         triangles.insert(0, [1, 1, 2]);
         triangles.insert(3, [0, 3, 3]);
         let scene = local(vertices, triangles);
-        assert_eq!(scene.dropped, Dropped { zero_area: 2, below_resolution: 0 });
+        assert_eq!(scene.dropped, Dropped { zero_area: 2, ..Dropped::default() });
         let mut ids = scene.caller_ids.clone();
         ids.sort_unstable();
         assert_eq!(ids, [1, 2, 4, 5, 6, 7, 8, 9]);
 
         let tiny = vec![[0.0; 3], [1e-12, 0.0, 0.0], [0.0, 1e-12, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let scene = local(tiny, vec![[0, 1, 2], [0, 3, 4]]);
-        assert_eq!(scene.dropped, Dropped { zero_area: 0, below_resolution: 1 });
+        assert_eq!(scene.dropped, Dropped { below_resolution: 1, ..Dropped::default() });
+    }
+
+    #[test]
+    fn opacities_go_with_their_triangles_and_the_invisible_are_left_out() {
+        let (vertices, triangles) = grid(9, 1.0, [0.0; 3]);
+        let mesh = Mesh::new("grid", vertices, triangles, Material::default()).unwrap();
+        let of = |opacity: &dyn Fn(usize) -> f32| {
+            let opacities = (0..162).map(opacity).collect();
+            let mesh = mesh.clone().with_opacities(opacities).unwrap();
+            LocalScene::new(&Scene::new(vec![mesh]).unwrap(), None, 64 * 30)
+        };
+        // Opaque scenes carry none.
+        let opaque = of(&|_| 1.0);
+        assert!(opaque.opacities.is_empty() && opaque.opacity(3) == 1.0);
+        let graded = of(&|index| index as f32 / 200.0);
+        assert_eq!((graded.dropped.invisible, graded.triangle_count()), (1, 161));
+        for (triangle, id) in graded.caller_ids.iter().enumerate() {
+            assert_eq!(graded.opacity(triangle), *id as f32 / 200.0);
+        }
+        // In whichever order triangles in one place are given.
+        let doubled = |opacities: Vec<f32>| {
+            let (vertices, triangle) = (grid(1, 1.0, [0.0; 3]).0, [[0, 1, 2]]);
+            let mesh = Mesh::new("pane", vertices, triangle.repeat(opacities.len()), Material::default()).unwrap();
+            let scene = Scene::new(vec![mesh.with_opacities(opacities).unwrap()]).unwrap();
+            LocalScene::new(&scene, None, ROOMY).opacities
+        };
+        assert_eq!(doubled(vec![0.3, 0.9, 0.1, 1.0, 0.7]), doubled(vec![1.0, 0.1, 0.7, 0.3, 0.9]));
+        let holes = of(&|index| if index % 3 == 0 { 0.0 } else { 1.0 });
+        assert!(holes.opacities.is_empty() && holes.triangle_count() == 108);
     }
 
     #[test]

@@ -158,7 +158,7 @@ fn strided_and_offset_accessors_read_the_right_bytes() {
 #[test]
 fn materials_keep_colour_and_roughness_and_note_the_rest() {
     let material = r#""materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.1,0.2,0.3,0.4],"metallicFactor":0.5,
-        "roughnessFactor":0.25,"baseColorTexture":{"index":0}},"normalTexture":{"index":0},"alphaMode":"BLEND"}],
+        "roughnessFactor":0.25,"baseColorTexture":{"index":0}},"normalTexture":{"index":0},"alphaMode":"MASK"}],
         "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}],
         "images":[{"uri":"absent.png"}],"textures":[{"source":0}],"accessors":["#;
     let bytes = glb_with(
@@ -169,10 +169,30 @@ fn materials_keep_colour_and_roughness_and_note_the_rest() {
     let scene = read("glb", &bytes).unwrap();
     let material = scene.meshes()[0].material;
     assert_eq!((material.base_color, material.roughness, material.specular), ([0.1, 0.2, 0.3], 0.25, 0.04));
+    assert_eq!(material.opacity, 1.0, "a mask's alpha is no opacity");
     let notes = scene.notes().join("\n");
-    for word in ["textures", "normal maps", "metallic", "alpha", "1 cameras"] {
+    for word in ["textures", "normal maps", "metallic", "alpha masks", "1 cameras"] {
         assert!(notes.contains(word), "{word} is not in {notes}");
     }
+}
+
+#[test]
+fn alpha_is_opacity_where_it_blends_and_nowhere_else() {
+    let of = |mode: &str, alpha: &str| {
+        let factor = format!(r#"{{"baseColorFactor":[0.1,0.2,0.3,{alpha}],"metallicFactor":0}}"#);
+        let material = format!(r#""materials":[{{"pbrMetallicRoughness":{factor}{mode}}}],"accessors":["#);
+        let with_material = (r#""indices":1"#, r#""indices":1,"material":0"#);
+        let bytes = glb_with(&TRIANGLE, &[0, 1, 2], &[(r#""accessors":["#, &material), with_material]);
+        let scene = read("glb", &bytes).unwrap();
+        (scene.meshes()[0].material.opacity, scene.notes().to_vec())
+    };
+    let blended = r#","alphaMode":"BLEND""#;
+    for (alpha, opacity) in [("0.4", 0.4), ("0", 0.0), ("1", 1.0), ("1.5", 1.0), ("-3", 0.0)] {
+        assert_eq!(of(blended, alpha), (opacity, Vec::new()));
+    }
+    assert_eq!(of("", "0.4"), (1.0, Vec::new()), "alpha means nothing unless it blends");
+    let masked = of(r#","alphaMode":"MASK""#, "0.4");
+    assert_eq!(masked, (1.0, vec!["alpha masks left out; their surfaces are opaque".to_owned()]));
 }
 
 #[test]

@@ -81,6 +81,14 @@ fn the_hash_sees_a_moved_part() {
 }
 
 #[test]
+fn a_part_is_opaque_unless_it_says_otherwise() {
+    let text = one_part(r#"{"box": {"size": [1, 1, 1]}}"#);
+    let opacity = |text: &str| procedural::parse(text).unwrap().build().unwrap().meshes()[0].material.opacity;
+    assert_eq!(opacity(&text), 1.0);
+    assert_eq!(opacity(&text.replace(r#""name": "part""#, r#""name": "part", "opacity": 0.25"#)), 0.25);
+}
+
+#[test]
 fn shipped_scenes_have_sane_bounds_lights_and_cameras() {
     for name in procedural::names() {
         let description = procedural::shipped(name).unwrap();
@@ -200,6 +208,7 @@ fn unknown_fields_shapes_and_values_are_refused() {
         (r#""size": [1, 1, 1]"#, r#""size": [1, 1, 1e999]"#, "number"),
         (r#""size": [1, 1, 1]"#, r#""size": [1, 1]"#, "length"),
         (r#""base_color": [1"#, r#""base_color": [1.5"#, "0..=1"),
+        (r#""base_color": [1"#, r#""opacity": 1.5, "base_color": [1"#, "0..=1"),
         (r#"[{"shape": {"box": {"size": [1, 1, 1]}}}]"#, "[]", "at least one shape"),
         (r#""sphere": {"radius": 1}"#, r#""lamp": {"radius": 1}"#, "lamp"),
         (r#""sphere": {"radius": 1}"#, r#""sphere": {"radius": -1}"#, "positive"),

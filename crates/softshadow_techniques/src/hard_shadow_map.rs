@@ -8,7 +8,8 @@
 //!
 //! **When it is wrong.** Everywhere in a penumbra, by up to 1: the light is a point. Shadows end within a texel of where they
 //! should; what lies inside a sphere light, but farther than half its radius from the centre, still shadows; gaps below about a
-//! texel are not resolved, on strongly curved surfaces a texel's width of light or dark may show.
+//! texel are not resolved, on strongly curved surfaces a texel's width of light or dark may show. Semi-opaque triangles are taken for
+//! opaque, and every result says so.
 //!
 //! **Maps.** A frustum fitted to casters and receivers; beyond 120 degrees, or with the light inside the scene, six faces of a
 //! cube; for a sun one parallel view.

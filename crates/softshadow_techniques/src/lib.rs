@@ -15,7 +15,7 @@ use softshadow_plan::{Host, Plan, Values};
 use softshadow_scene::{Light, SampleSpread, SceneError};
 
 pub use block::{Block, blocks};
-pub use depth_complexity::DepthComplexity;
+pub use depth_complexity::{Attenuation, DepthComplexity};
 pub use hard_shadow_map::HardShadowMap;
 pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
@@ -113,6 +113,17 @@ impl Technique {
         }
     }
 
+    /// Checks whether the settings can serve such a scene.
+    ///
+    /// # Errors
+    /// [`TechniqueError::Setting`] names the setting, and one that can.
+    pub fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
+        match self {
+            Self::DepthComplexity(settings) => settings.check_scene(scene),
+            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+        }
+    }
+
     /// Whether pixels are averaged with their neighbours.
     #[must_use]
     pub fn interleaves(&self) -> bool {
@@ -162,13 +173,14 @@ impl Technique {
         }
     }
 
-    /// Bytes on the device that one receiver takes, beyond the receiver itself, in a scene of so many sub-scenes.
+    /// Bytes on the device that one receiver takes, beyond the receiver itself, in a scene of so many sub-scenes, with or without
+    /// semi-opaque triangles.
     #[must_use]
-    pub fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64) -> u64 {
+    pub fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64, is_semi_opaque: bool) -> u64 {
         match self {
-            Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes),
+            Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes, is_semi_opaque),
             Self::HardShadowMap(_) => 4 * channels,
-            Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels),
+            Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels, is_semi_opaque),
         }
     }
 

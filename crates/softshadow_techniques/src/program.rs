@@ -109,10 +109,11 @@ impl VisibilityProgram<'_> {
     /// Checks what would make a stage fail, so that [`Program::step`] cannot.
     ///
     /// # Errors
-    /// As [`Technique::check`], [`Technique::check_call`] and [`Technique::values`].
+    /// As [`Technique::check`], [`Technique::check_call`], [`Technique::check_scene`] and [`Technique::values`].
     pub fn check(&self) -> Result<(), TechniqueError> {
         self.technique.check()?;
         self.technique.check_call(self.receivers, self.lights, &self.host)?;
+        self.technique.check_scene(self.scene)?;
         if self.technique.wants_occluders() && self.occluders.len() != self.lights.len() {
             let reason = format!("{} given for {} lights", self.occluders.len(), self.lights.len());
             return Err(TechniqueError::Setting { technique: self.technique.name(), setting: "occluders", reason });

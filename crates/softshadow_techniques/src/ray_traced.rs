@@ -2,7 +2,8 @@
 //!
 //! The reference on the GPU. For a receiver p and each light sample s, the segment from p to s is traced through a hierarchy
 //! until anything is hit; V is the share of samples that are visible. Blocked is what lies below the receiver's horizon, what
-//! is hidden by any triangle but the receiver's own, and everything behind a one-sided light.
+//! is hidden by any triangle but the receiver's own, and everything behind a one-sided light. In scenes with semi-opaque triangles a ray
+//! goes on to the first opaque one, and V is the mean over the samples of what passes: the product of 1 − opacity over the triangles crossed.
 //!
 //! **Parameters.** `samples` a pass; their `pattern` and `seed`; `passes`, averaged, each with its own samples, from whose
 //! spread the standard error comes; `probes`: that many samples first, and all of them only where they disagree among
@@ -14,7 +15,8 @@
 //! **When it is wrong.** A share of n samples is off by about 0.016 at 64 stratified samples along a straight edge; more samples or passes
 //! help. Interleaved shares are those of a neighbourhood: they are blurred by half of `tile`, which no number of passes undoes, and err more
 //! than one set where penumbrae are only that wide. `probes` can miss an occluder that hides less than one probe's share of the light and
-//! no neighbour's. A ray within rounding of an edge may fall to either side, but never between two triangles that share one.
+//! no neighbour's. A ray within rounding of an edge may fall to either side, but never between two triangles that share one;
+//! through two semi-opaque ones it may count both.
 //!
 //! **Sources.** Determinant test with shared edges: Davidovič, Engelhardt, Georgiev, Slusallek, Dachsbacher 2012, section 4.
 //! Hierarchy without stack: Smits 1998. The interval of a bundle of rays: Wald, Ize, Kensler, Knoll, Parker 2006. Interleaved samples:
@@ -29,7 +31,7 @@ use crate::parts::interleaving::{self, NOISY_BYTES};
 use crate::parts::light_buffers::{self, Sampling};
 use crate::parts::pattern_name;
 use crate::parts::resolve::{BLOCKED, Masks};
-use crate::parts::{receivers, resolve, scene_buffers, shading, spread};
+use crate::parts::{opacity, receivers, resolve, scene_buffers, shading, spread};
 use crate::request::{ReceiverSource, Request};
 
 /// Settings of `ray_traced`.
@@ -77,6 +79,8 @@ const NARROW: Kernel = Kernel { file: "ray_traced/narrow.wgsl", entry: "narrow" 
 const COUNT_GROUPS: Kernel = Kernel { file: "ray_traced/count_groups.wgsl", entry: "count_groups" };
 const TRACE: Kernel = Kernel { file: "ray_traced/trace.wgsl", entry: "trace" };
 const CHOOSE: Kernel = Kernel { file: "ray_traced/choose.wgsl", entry: "choose" };
+const TRACE_ATTENUATED: Kernel = Kernel { file: "ray_traced/trace.wgsl", entry: "trace_attenuated" };
+const CHOOSE_ATTENUATED: Kernel = Kernel { file: "ray_traced/choose.wgsl", entry: "choose_attenuated" };
 
 /// `TraceRange` of `hierarchy.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -128,10 +132,11 @@ impl RayTraced {
         interleaving::halo_rows(&self.sampling(0)) + u32::from(self.probes > 0)
     }
 
-    pub(crate) fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64) -> u64 {
+    pub(crate) fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64, is_semi_opaque: bool) -> u64 {
+        let passes = if is_semi_opaque { opacity::bytes_per_receiver(self.samples) } else { 0 };
         // Masks, the number of samples decided, both lists of candidates, values and their errors, and values of one pass.
         let noisy = if self.spread == SampleSpread::Interleaved { NOISY_BYTES } else { 0 };
-        u64::from(self.words()) * 4 + 4 + 2 * sub_scenes * CANDIDATE_BYTES + 8 * channels + noisy
+        u64::from(self.words()) * 4 + 4 + 2 * sub_scenes * CANDIDATE_BYTES + 8 * channels + noisy + passes
     }
 
     fn words(&self) -> u32 {
@@ -159,6 +164,10 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
         .bind("blocked", blocked)
         .bind("decided", decided);
 
+    let attenuated = request.scene.opacity.as_ref().map(|contents| Attenuated {
+        triangles: plan.uploaded(opacity::TRIANGLE_TRANSMITTANCE, &contents.transmittances),
+        samples: opacity::append(&mut plan, request, settings.samples, light.sampling, blocked),
+    });
     if !request.scene.local.sub_scenes.is_empty() {
         let corners = match plan.find("corners 0") {
             Some(_) => (0..request.scene.corners.len()).filter_map(|i| plan.find(&format!("corners {i}"))).collect(),
@@ -211,8 +220,9 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
             for index in 0..corners.len() {
                 let trace_range = range(plan, stage, index);
                 let groups = size(plan, stage, index, trace_range, candidates[index]);
-                plan.compute(format!("{stage} {index}"), why, TRACE, Over::Indirect(groups))
-                    .bind("light", light.light)
+                let kernel = if attenuated.is_some() { TRACE_ATTENUATED } else { TRACE };
+                let pass = plan.compute(format!("{stage} {index}"), why, kernel, Over::Indirect(groups));
+                pass.bind("light", light.light)
                     .bind("sampling", light.sampling)
                     .bind("trace_range", trace_range)
                     .bind("receivers", receivers)
@@ -220,15 +230,29 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
                     .bind("nodes", nodes[index])
                     .bind("corners", corners[index])
                     .bind("decided", decided)
-                    .bind("candidates", candidates[index])
-                    .bind("blocked", blocked);
+                    .bind("candidates", candidates[index]);
+                match &attenuated {
+                    Some(passing) => pass
+                        .bind("triangle_transmittance", passing.triangles)
+                        .bind("sample_transmittance", passing.samples),
+                    None => pass.bind("blocked", blocked),
+                };
             }
         };
         if settings.probes == 0 {
             trace(&mut plan, "trace", "traces every sample of the candidates");
         } else {
             trace(&mut plan, "probe", "traces the first samples of the candidates");
-            append_choice(&mut plan, items(settings.probes / 4 + 1), [light.sampling, receivers, blocked, decided]);
+            let why = "finds the receivers whose probes or neighbours disagree";
+            let kernel = if attenuated.is_some() { CHOOSE_ATTENUATED } else { CHOOSE };
+            let image = plan.parameter("probe image", size_of::<ProbeImage>() as u64);
+            let pass = plan.compute("choose", why, kernel, items(settings.probes / 4 + 1));
+            pass.bind("sampling", light.sampling).bind("probe_image", image).bind("receivers", receivers);
+            match &attenuated {
+                Some(passing) => pass.bind("sample_transmittance", passing.samples),
+                None => pass.bind("blocked", blocked),
+            };
+            pass.bind("decided", decided);
             trace(&mut plan, "trace", "traces the other samples where the probes disagree");
         }
         for (index, list) in candidates.into_iter().enumerate() {
@@ -238,19 +262,15 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
             plan.outputs.push(counts);
         }
     }
-    let masks = Masks { blocked, decided, areas: None };
+    let masks = Masks { blocked, decided, areas: None, transmittance: attenuated.map(|passing| passing.samples) };
     resolve::append(&mut plan, request, &sampling, &light, receivers, masks);
     plan
 }
 
-fn append_choice(plan: &mut Plan, over: Over, [sampling, receivers, blocked, decided]: [ResourceId; 4]) {
-    let image = plan.parameter("probe image", size_of::<ProbeImage>() as u64);
-    plan.compute("choose", "finds the receivers whose probes or neighbours disagree", CHOOSE, over)
-        .bind("sampling", sampling)
-        .bind("probe_image", image)
-        .bind("receivers", receivers)
-        .bind("blocked", blocked)
-        .bind("decided", decided);
+/// What rays read and write instead of masks where triangles are semi-opaque.
+struct Attenuated {
+    triangles: ResourceId,
+    samples: ResourceId,
 }
 
 /// The values of the plan's parameters for one light and pass.

@@ -8,15 +8,15 @@ use std::collections::BTreeSet;
 use std::mem::{offset_of, size_of};
 use std::path::Path;
 
-use softshadow_scene::occluders::NO_SIDE;
+use softshadow_scene::occluders::{NO_SIDE, OPAQUE};
 use softshadow_scene::{BvhNode, Corner, LocalPoint};
 use softshadow_shaders::{EMBEDDED, module};
 use softshadow_techniques::depth_complexity::blended::{Largest, Packing, TARGETS, WedgeView};
-use softshadow_techniques::depth_complexity::{ClusterRange, FoldSettings, FrameRecord};
+use softshadow_techniques::depth_complexity::{AttenuationScale, ClusterRange, FoldSettings, FrameRecord};
 use softshadow_techniques::hard_shadow_map::{ShadowView, ShadowViews};
 use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
-use softshadow_techniques::parts::occluder_buffers::{EdgeRecord, FaceRecord, IncidentFace};
+use softshadow_techniques::parts::occluder_buffers::{EdgeRecord, FaceRecord, IncidentFace, UNEQUAL_FACES};
 use softshadow_techniques::parts::receivers::{CameraClip, CameraRays, PointRange, RECEIVER_BYTES, Receiver, SubScene};
 use softshadow_techniques::parts::shading::{MaterialRecord, ShadingRecord};
 use softshadow_techniques::ray_traced::{ProbeImage, TraceRange};
@@ -31,7 +31,7 @@ struct Layout {
 /// A Rust struct: its name, its bytes by the compiler, the WGSL file and the struct there.
 type Pair = (&'static str, usize, &'static str, &'static str);
 
-const PAIRS: [Pair; 26] = [
+const PAIRS: [Pair; 27] = [
     ("Receiver", size_of::<Receiver>(), "shared/receiver.wgsl", "Receiver"),
     ("CameraClip", size_of::<CameraClip>(), "receivers/draw_triangle_ids.wgsl", "CameraClip"),
     ("CameraRays", size_of::<CameraRays>(), "receivers/place_on_triangles.wgsl", "CameraRays"),
@@ -54,6 +54,7 @@ const PAIRS: [Pair; 26] = [
     ("BvhNode", size_of::<BvhNode>(), "depth_complexity/tree.wgsl", "TreeNode"),
     ("FrameRecord", size_of::<FrameRecord>(), "depth_complexity/frame.wgsl", "LightFrame"),
     ("ClusterRange", size_of::<ClusterRange>(), "depth_complexity/clusters.wgsl", "ClusterRange"),
+    ("AttenuationScale", size_of::<AttenuationScale>(), "depth_complexity/spread_reference.wgsl", "AttenuationScale"),
     ("FoldSettings", size_of::<FoldSettings>(), "depth_complexity/fold.wgsl", "FoldSettings"),
     ("WedgeView", size_of::<WedgeView>(), "depth_complexity/blended/hull.wgsl", "WedgeView"),
     ("Packing", size_of::<Packing>(), "depth_complexity/blended/packing.wgsl", "Packing"),
@@ -242,7 +243,7 @@ fn lists_of_edges_lie_as_plans_say() {
     // A cluster, and a group of them, has a bit for each.
     assert_eq!(constant(shader("depth_complexity/clusters.wgsl"), "CLUSTER"), Some(32));
     // The front door reads these words by number.
-    let counts = ["parts", "chunks", "edges", "unfinished", "by_area", "reserved0", "reserved1", "reserved2"];
+    let counts = ["parts", "chunks", "edges", "unfinished", "by_area", "overflowed", "reserved0", "reserved1"];
     let words = counts.iter().zip(0..).map(|(name, word)| ((*name).to_owned(), 4 * word));
     assert_eq!(twin("depth_complexity/tiles.wgsl", "ListCounts").members, words.collect::<Vec<_>>());
 }
@@ -271,6 +272,8 @@ fn wedges_are_drawn_and_counted_as_plans_say() {
 fn faces_and_leaves_are_packed_alike() {
     let occluders = shader("depth_complexity/occluders.wgsl");
     assert_eq!(constant(occluders, "NO_SIDE"), Some(u64::from(NO_SIDE)));
+    assert_eq!(constant(occluders, "UNEQUAL_FACES"), Some(u64::from(UNEQUAL_FACES)));
+    assert_eq!(constant(shader("depth_complexity/attenuation.wgsl"), "OPAQUE"), Some(u64::from(OPAQUE)));
     let bits = constant(&source("../softshadow_scene/src/bvh.rs"), "LEAF_BITS");
     assert!(bits.is_some());
     assert_eq!(constant(shader("depth_complexity/tree.wgsl"), "LEAF_BITS"), bits);
@@ -278,17 +281,27 @@ fn faces_and_leaves_are_packed_alike() {
 
 #[test]
 fn structs_of_depth_complexity_are_the_same_in_every_kernel() {
-    let kernels =
-        ["silhouettes", "bound_clusters", "reference_depth", "bound_tiles", "cull", "size_fold", "fold"].map(|name| {
-            let file = format!("depth_complexity/{name}.wgsl");
-            module(&file).unwrap()
-        });
+    let kernels = [
+        "silhouettes",
+        "bound_clusters",
+        "reference_depth",
+        "spread_reference",
+        "bound_tiles",
+        "cull",
+        "size_fold",
+        "fold",
+    ]
+    .map(|name| {
+        let file = format!("depth_complexity/{name}.wgsl");
+        module(&file).unwrap()
+    });
     let homes = [
         ("frame", &["LightFrame", "FrameSamples"][..]),
         ("occluders", &["Face", "OccluderEdge", "IncidentFace"]),
         ("clusters", &["Cluster", "ClusterRange"]),
         ("tiles", &["TilePart", "Slot", "ListCounts"]),
         ("tree", &["TreeNode"]),
+        ("spread_reference", &["AttenuationScale"]),
     ];
     for (file, names) in homes {
         for name in names {

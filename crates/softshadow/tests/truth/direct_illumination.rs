@@ -19,9 +19,9 @@ fn room(between: &[Triangle]) -> Scene {
         Mesh::new(name, triangles.as_flattened().to_vec(), indices, material).unwrap()
     };
     let wall = quad([-1.6, 1.2, 0.0], [1.6, 1.2, 0.0], [1.6, 1.4, 2.0], [-1.6, 1.4, 2.0]);
-    let shiny = Material { base_color: [0.2, 0.5, 0.7], roughness: 0.6, specular: 0.4 };
-    let matte = Material { base_color: [0.8, 0.6, 0.3], roughness: 1.0, specular: 0.0 };
-    let glossy = Material { base_color: [0.6, 0.1, 0.2], roughness: 0.35, specular: 0.2 };
+    let shiny = Material { base_color: [0.2, 0.5, 0.7], roughness: 0.6, specular: 0.4, ..Material::default() };
+    let matte = Material { base_color: [0.8, 0.6, 0.3], roughness: 1.0, specular: 0.0, ..Material::default() };
+    let glossy = Material { base_color: [0.6, 0.1, 0.2], roughness: 0.35, specular: 0.2, ..Material::default() };
     let mut meshes = vec![mesh("floor", &plate([-1.6, 1.6], [-1.6, 1.2], 0.0), matte), mesh("wall", &wall, shiny)];
     meshes.extend((!between.is_empty()).then(|| mesh("between", between, glossy)));
     Scene::new(meshes).unwrap()

@@ -26,6 +26,8 @@ mod moving;
 mod pixels;
 mod same_samples;
 mod samples;
+mod semi_opaque;
+mod semi_opaque_samples;
 mod shapes;
 mod sphere_lights;
 mod spreads;

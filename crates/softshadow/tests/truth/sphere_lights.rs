@@ -8,7 +8,7 @@ use crate::common::{context, hard_shadow_map, lamp, points, ray_traced, rectangl
 
 fn plate(z: f64, half: f64) -> Mesh {
     let corners = [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]];
-    let material = Material { base_color: [0.8; 3], roughness: 1.0, specular: 0.0 };
+    let material = Material { base_color: [0.8; 3], roughness: 1.0, specular: 0.0, opacity: 1.0 };
     Mesh::new("plate", corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]], material).unwrap()
 }
 

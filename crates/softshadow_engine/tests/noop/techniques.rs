@@ -19,11 +19,12 @@ use crate::programs::engine;
 
 const SIZE: [u32; 2] = [24, 16];
 
-/// Two sheets of two triangles in one sub-scene, or in as many as `binding` bytes make necessary.
-fn sheets(binding: u64) -> SceneContents {
+/// Two sheets of two triangles in one sub-scene, or in as many as `binding` bytes make necessary; the upper one may be semi-opaque.
+fn sheets(binding: u64, opacity: f32) -> SceneContents {
     let rows = |z: f64| vec![[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]];
-    let sheet = |z| Mesh::new("sheet", rows(z), vec![[0, 1, 2], [0, 2, 3]], Material::default()).unwrap();
-    let scene = Scene::new(vec![sheet(0.0), sheet(0.5)]).unwrap();
+    let material = |opacity| Material { opacity, ..Material::default() };
+    let sheet = |z, opacity| Mesh::new("sheet", rows(z), vec![[0, 1, 2], [0, 2, 3]], material(opacity)).unwrap();
+    let scene = Scene::new(vec![sheet(0.0, 1.0), sheet(0.5, opacity)]).unwrap();
     SceneContents::new(LocalScene::new(&scene, None, binding))
 }
 
@@ -65,9 +66,9 @@ fn techniques() -> Vec<Technique> {
     all
 }
 
-/// Whether a technique serves such receivers here.
-fn serves(technique: &Technique, receivers: ReceiverSource<'_>, engine: &Engine) -> bool {
-    technique.check_call(receivers, &lights()[..1], &engine.host()).is_ok()
+/// Whether a technique serves such receivers of such a scene here.
+fn serves(technique: &Technique, scene: &SceneContents, receivers: ReceiverSource<'_>, engine: &Engine) -> bool {
+    technique.check_call(receivers, &lights()[..1], &engine.host()).is_ok() && technique.check_scene(scene).is_ok()
 }
 
 fn occluders(scene: &SceneContents, lights: &[Light]) -> Vec<Arc<OccluderContents>> {
@@ -94,8 +95,8 @@ fn sizes(engine: &Engine, program: &VisibilityProgram<'_>) -> (RunReport, Vec<BT
 #[test]
 fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
     let engine = engine();
-    let scenes = [sheets(1 << 20), sheets(128)];
-    assert_eq!(scenes.each_ref().map(|s| s.local.sub_scenes.len()), [1, 2]);
+    let scenes = [sheets(1 << 20, 1.0), sheets(128, 1.0), sheets(128, 0.5)];
+    assert_eq!(scenes.each_ref().map(|s| s.local.sub_scenes.len()), [1, 2, 2]);
     let camera = Camera::look_at([3.0, 0.5, 4.0], [0.0; 3], None, 45.0, SIZE).unwrap();
     let points = Points::new((0..77).map(|n| [0.01 * f64::from(n), 0.0, 0.1]).collect(), None).unwrap();
     let lights = lights();
@@ -104,7 +105,7 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
         for scene in &scenes {
             let occluders = occluders(scene, &lights);
             for receivers in [ReceiverSource::Camera(&camera), ReceiverSource::Points(&points)] {
-                if !serves(&technique, receivers, &engine) {
+                if !serves(&technique, scene, receivers, &engine) {
                     continue;
                 }
                 for picture in [None, Some(Shading::Integrated), Some(Shading::Modulated)] {
@@ -132,8 +133,8 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
             }
         }
     }
-    // Of fifteen, two average pixels, and three draw on images.
-    assert_eq!(runs, (15 + 10) * 2 * 3 * 2);
+    // Of fifteen, two average pixels, and three draw on images; these three know no semi-opaque sheets.
+    assert_eq!(runs, (15 * 3 - 3 + 10 * 3) * 3 * 2);
 }
 
 /// Outputs of every stage against what is asked for: values with a light's last pass, receivers and pictures once a block.
@@ -176,7 +177,7 @@ fn check_sizes(program: &VisibilityProgram<'_>, rows: &[BTreeMap<String, usize>]
 #[test]
 fn one_light_in_one_block_is_one_submission() {
     let engine = engine();
-    let (scene, lights) = (sheets(1 << 20), lights());
+    let (scene, lights) = (sheets(1 << 20, 1.0), lights());
     let camera = Camera::look_at([3.0, 0.5, 4.0], [0.0; 3], None, 45.0, [512, 512]).unwrap();
     let receivers = ReceiverSource::Camera(&camera);
     for technique in Technique::defaults() {
@@ -200,7 +201,7 @@ fn an_empty_scene_is_run_too() {
     let engine = engine();
     let scene = SceneContents::new(LocalScene::new(&Scene::new(Vec::new()).unwrap(), None, 1 << 20));
     let (points, lights) = (Points::new(vec![[0.0; 3]; 9], None).unwrap(), lights());
-    for technique in techniques().iter().filter(|t| serves(t, ReceiverSource::Points(&points), &engine)) {
+    for technique in techniques().iter().filter(|t| serves(t, &scene, ReceiverSource::Points(&points), &engine)) {
         let program = VisibilityProgram {
             technique,
             scene: &scene,

@@ -42,7 +42,7 @@ impl Occluders {
             if !triangle.as_flattened().iter().all(|x| x.is_finite()) {
                 return Err(SceneError::NotFinite { what: "triangles of the occluders".into(), index });
             }
-            let attenuation = attenuation(opacity(index), index)?;
+            let attenuation = checked_attenuation(opacity(index), index)?;
             let corners = canonical(triangle);
             let Some(normal) = unit_normal(&corners) else { continue };
             if attenuation == 0 {
@@ -158,15 +158,22 @@ pub(super) fn unit_normal(corners: &[[f32; 3]; 3]) -> Option<[f32; 3]> {
     (area != DVec3::ZERO).then(|| area.normalize().as_vec3().to_array())
 }
 
-fn attenuation(opacity: f32, triangle: usize) -> Result<u32, SceneError> {
+fn checked_attenuation(opacity: f32, triangle: usize) -> Result<u32, SceneError> {
     if !opacity.is_finite() || opacity < 0.0 {
         let reason = format!("{opacity} is no opacity; it is a number from 0, invisible, to 1, opaque");
         return Err(SceneError::invalid(format!("opacity of triangle {triangle}"), reason));
     }
+    Ok(attenuation(opacity))
+}
+
+/// [`OPAQUE`], or the units of attenuation of one crossing: logarithms, so that what passes several layers is a sum, and integers, so that
+/// what is added at one edge of a triangle is taken away at another to the last bit.
+#[must_use]
+pub fn attenuation(opacity: f32) -> u32 {
     if opacity >= 1.0 {
-        return Ok(OPAQUE);
+        return OPAQUE;
     }
-    Ok((-(1.0 - f64::from(opacity)).log2() * UNITS_PER_HALVING).round() as u32)
+    (-(1.0 - f64::from(opacity)).log2() * UNITS_PER_HALVING).round() as u32
 }
 
 /// A box as the degenerate triangle that spans it.
@@ -194,10 +201,10 @@ mod tests {
             (7.0, OPAQUE),
         ];
         for (opacity, expected) in cases {
-            assert_eq!(attenuation(opacity, 0), Ok(expected), "{opacity}");
+            assert_eq!(checked_attenuation(opacity, 0), Ok(expected), "{opacity}");
         }
         for opacity in [-0.1, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            let message = attenuation(opacity, 41).unwrap_err().to_string();
+            let message = checked_attenuation(opacity, 41).unwrap_err().to_string();
             assert!(message.starts_with("opacity of triangle 41: "), "{message}");
         }
     }

@@ -15,6 +15,8 @@ pub use effect::BoundaryEffect;
 
 use crate::bvh::Bvh;
 
+pub use build::attenuation;
+
 /// Attenuation of a face that lets nothing through.
 pub const OPAQUE: u32 = u32::MAX;
 

@@ -49,11 +49,17 @@ struct Part {
     roughness: f32,
     #[serde(default)]
     specular: f32,
+    #[serde(default = "opaque")]
+    opacity: f32,
     of: Vec<Placed>,
 }
 
 fn matte() -> f32 {
     Material::default().roughness
+}
+
+fn opaque() -> f32 {
+    Material::default().opacity
 }
 
 /// The light that a scene is meant for.
@@ -189,9 +195,9 @@ impl ProceduralScene {
         let mut needed = 0_u64;
         for part in &self.parts {
             let what = format!("part '{}'", part.name);
-            let colors = part.base_color.iter().chain([&part.roughness, &part.specular]);
+            let colors = part.base_color.iter().chain([&part.roughness, &part.specular, &part.opacity]);
             if !colors.into_iter().all(|x| (0.0..=1.0).contains(x)) {
-                return Err(SceneError::invalid(what, "base_color, roughness and specular lie in 0..=1"));
+                return Err(SceneError::invalid(what, "base_color, roughness, specular and opacity lie in 0..=1"));
             }
             let triangles = shapes::checked_triangle_count(&part.of);
             needed = needed.saturating_add(triangles.map_err(|reason| SceneError::invalid(what, reason))?);
@@ -208,7 +214,8 @@ impl ProceduralScene {
 impl Part {
     fn build(&self) -> Result<Mesh, SceneError> {
         let (vertices, triangles) = shapes::build(&self.of);
-        let material = Material { base_color: self.base_color, roughness: self.roughness, specular: self.specular };
+        let Self { base_color, roughness, specular, opacity, .. } = *self;
+        let material = Material { base_color, roughness, specular, opacity };
         Mesh::new(self.name.clone(), vertices, triangles, material)
     }
 }

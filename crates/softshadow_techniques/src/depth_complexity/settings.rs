@@ -1,7 +1,7 @@
 //! The settings of `depth_complexity`, and which calls they can serve.
 
 use serde::{Deserialize, Serialize};
-use softshadow_plan::Host;
+use softshadow_plan::{Content, Host};
 use softshadow_scene::{Light, LightSampling, LightShape, SamplePattern, SampleSpread, pass_seed};
 
 use super::blended::{self, BASES};
@@ -9,6 +9,8 @@ use super::tiled::{self, SLOT_BYTES};
 use super::values::{MOST_SAMPLES, SET_SAMPLES};
 use crate::TechniqueError;
 use crate::parts::interleaving::{self, NOISY_BYTES};
+use crate::parts::opacity::{self, OpacityContents};
+use crate::parts::scene_buffers::SceneContents;
 use crate::parts::{pattern_name, spread};
 use crate::request::ReceiverSource;
 
@@ -39,6 +41,8 @@ pub struct DepthComplexity {
     pub spread: SampleSpread,
     /// Side of the square of pixels that interleaves, 2 to 8.
     pub tile: u32,
+    /// How several semi-opaque layers add up; the blended evaluation knows opaque ones alone.
+    pub attenuation: Attenuation,
     /// How edges find their receivers.
     pub evaluation: Evaluation,
     /// Blended only: how layers over the reference point are counted.
@@ -81,6 +85,17 @@ pub enum Evaluation {
     Blended,
 }
 
+/// How several semi-opaque layers add up.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Attenuation {
+    /// Logarithms: what passes is the product of what passes each.
+    #[default]
+    Logarithmic,
+    /// Opacities, as in the paper: right for a single layer, too dark for more.
+    Sum,
+}
+
 /// How the blended evaluation counts layers over the reference point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -113,11 +128,22 @@ impl Default for DepthComplexity {
             coverage: Coverage::Exact,
             spread: SampleSpread::Correlated,
             tile: spread::TILE,
+            attenuation: Attenuation::default(),
             evaluation: Evaluation::Tiled,
             initial_counts: InitialCounts::Rays,
             counters: Counters::Words,
             base: SMALLEST_BASE,
             batches: 1,
+        }
+    }
+}
+
+impl Attenuation {
+    /// What each triangle takes away.
+    pub(super) fn of(self, opacity: &OpacityContents) -> &Content {
+        match self {
+            Self::Logarithmic => &opacity.halvings,
+            Self::Sum => &opacity.shares,
         }
     }
 }
@@ -147,6 +173,12 @@ impl DepthComplexity {
             return fail("coverage", "'table' needs evaluation 'tiled' and spread 'correlated'; use 'exact'".into());
         }
         spread::check("depth_complexity", &self.sampling(0), SET_SAMPLES)?;
+        if self.evaluation == Evaluation::Blended && self.attenuation != Attenuation::default() {
+            return fail(
+                "attenuation",
+                "counts for evaluation 'tiled' alone: 'blended' knows opaque triangles only".into(),
+            );
+        }
         let defaults = Self::default();
         let changed = [
             ("initial_counts", self.initial_counts != defaults.initial_counts),
@@ -192,6 +224,19 @@ impl DepthComplexity {
         }
     }
 
+    /// Whether layers of this scene can be counted: blended counters hold numbers of opaque ones.
+    pub(crate) fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
+        match self.evaluation {
+            Evaluation::Blended if scene.opacity.is_some() => Err(TechniqueError::Setting {
+                technique: "depth_complexity",
+                setting: "evaluation",
+                reason: "'blended' counts opaque triangles alone, and the scene has semi-opaque ones; use 'tiled'"
+                    .into(),
+            }),
+            Evaluation::Blended | Evaluation::Tiled => Ok(()),
+        }
+    }
+
     /// Stages of one pass: wedges are drawn once to bound counters, and once to count.
     pub(crate) fn stages(&self) -> u32 {
         match self.evaluation {
@@ -211,14 +256,15 @@ impl DepthComplexity {
         interleaving::halo_rows(&self.sampling(0))
     }
 
-    pub(crate) fn bytes_per_receiver(&self, channels: u64) -> u64 {
+    pub(crate) fn bytes_per_receiver(&self, channels: u64, is_semi_opaque: bool) -> u64 {
+        let passes = if is_semi_opaque { opacity::bytes_per_receiver(self.samples) } else { 0 };
         let area = if self.exact_area && channels == 1 && self.evaluation == Evaluation::Tiled { 4 } else { 0 };
         let noisy = if self.spread == SampleSpread::Interleaved { NOISY_BYTES } else { 0 };
         // What both evaluations have: order, slot, mask, decided samples, lists; values and their errors.
         let common = 4 + SLOT_BYTES + u64::from(self.words()) * 4 + 4 + 8 * channels + tiled::list_bytes_per_receiver();
         common
             + match self.evaluation {
-                Evaluation::Tiled => area + noisy,
+                Evaluation::Tiled => area + noisy + passes,
                 Evaluation::Blended => blended::bytes_per_receiver(self),
             }
     }

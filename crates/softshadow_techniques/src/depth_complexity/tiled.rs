@@ -4,7 +4,7 @@ use softshadow_plan::{Kernel, Over, Plan, ResourceId};
 
 use super::coverage_table::TABLE_BYTES;
 use super::values::{ClusterRange, FoldSettings, GROUP, MOST_CORNERS, area_answers};
-use super::{DepthComplexity, Reads, Samples, Silhouettes};
+use super::{Attenuated, DepthComplexity, Reads, Samples, Silhouettes};
 use crate::parts::occluder_buffers::OccluderContents;
 use crate::request::Request;
 
@@ -51,6 +51,12 @@ const FOLD: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold" 
 const FOLD_AREAS: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_areas" };
 const FOLD_OWN_SAMPLES: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_own_samples" };
 const FOLD_OWN_SAMPLES_AREAS: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_own_samples_areas" };
+const FOLD_ATTENUATED: Kernel = Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_attenuated" };
+const FOLD_ATTENUATED_OWN_SAMPLES: Kernel =
+    Kernel { file: "depth_complexity/fold.wgsl", entry: "fold_attenuated_own_samples" };
+const REFERENCE_DEPTH_ATTENUATED: Kernel =
+    Kernel { file: "depth_complexity/reference_depth.wgsl", entry: "reference_depth_attenuated" };
+const SPREAD_REFERENCE: Kernel = Kernel { file: "depth_complexity/spread_reference.wgsl", entry: "spread_reference" };
 
 /// Bytes of the lists that one receiver takes, on average.
 pub(super) fn list_bytes_per_receiver() -> u64 {
@@ -85,6 +91,7 @@ pub(super) fn append_fold(
     settings: &DepthComplexity,
     occluders: &OccluderContents,
     reads: &Reads,
+    attenuated: Option<&Attenuated>,
 ) -> Option<ResourceId> {
     let clusters_in = |n: u32| n.div_ceil(CLUSTER);
     let (cluster_count, tile_count) = (clusters_in(occluders.edge_count), tiles(request));
@@ -106,7 +113,8 @@ pub(super) fn append_fold(
     plan.clear("no counts", "nothing is counted yet", counts);
     let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
     let first_faces = plan.buffer("first faces", first_face_bytes(request));
-    append_depths(plan, request, reads, &Stock { faces, face_tree, edges, range, parts, first_faces, lists, counts });
+    let stock = Stock { faces, face_tree, edges, range, parts, first_faces, lists, counts };
+    append_depths(plan, request, reads, &stock, attenuated);
     append_silhouettes(plan, settings, occluders, reads, &EdgeStock { edges, incident_faces, range, clusters });
     let why = "bounds 32 clusters of edges at a time";
     plan.compute("bound clusters", why, BOUND_CLUSTERS, items(clusters_in(cluster_count), 8))
@@ -141,11 +149,14 @@ pub(super) fn append_fold(
         .bind("counts", counts);
     for group in 0..settings.samples.div_ceil(GROUP) {
         let areas = areas.filter(|_| group == 0);
-        let [plain, with_areas] = match reads.samples {
-            Samples::Shared(_) => [FOLD, FOLD_AREAS],
-            Samples::Own { .. } => [FOLD_OWN_SAMPLES, FOLD_OWN_SAMPLES_AREAS],
+        let [plain, with_areas, attenuating] = match reads.samples {
+            Samples::Shared(_) => [FOLD, FOLD_AREAS, FOLD_ATTENUATED],
+            Samples::Own { .. } => [FOLD_OWN_SAMPLES, FOLD_OWN_SAMPLES_AREAS, FOLD_ATTENUATED_OWN_SAMPLES],
         };
         let (kernel, why) = match areas {
+            _ if attenuated.is_some() => {
+                (attenuating, "adds up opaque layers and attenuation at each edge for 64 samples")
+            }
             Some(_) => (with_areas, "adds up what changes at each edge for 64 samples, and the area beyond it"),
             None => (plain, "adds up what changes at each edge for 64 samples"),
         };
@@ -165,9 +176,15 @@ pub(super) fn append_fold(
             .bind("edges", edges)
             .bind("incident_faces", incident_faces)
             .bind("slots", reads.slots)
-            .bind("lists", lists)
-            .bind("blocked", reads.blocked)
-            .bind("counts", counts);
+            .bind("lists", lists);
+        match attenuated {
+            None => pass.bind("blocked", reads.blocked),
+            Some(passing) => pass
+                .bind("attenuation_scale", passing.scale)
+                .bind("triangle_attenuation", passing.triangles)
+                .bind("sample_transmittance", passing.samples),
+        };
+        pass.bind("counts", counts);
         match standing {
             Some([group_samples, table]) => {
                 pass.bind("group_samples", group_samples).bind("coverage_table", table);
@@ -206,7 +223,13 @@ pub(super) struct Stock {
 }
 
 /// Counts the layers over the reference point for every receiver.
-pub(super) fn append_depths(plan: &mut Plan, request: &Request<'_>, reads: &Reads, stock: &Stock) {
+pub(super) fn append_depths(
+    plan: &mut Plan,
+    request: &Request<'_>,
+    reads: &Reads,
+    stock: &Stock,
+    attenuated: Option<&Attenuated>,
+) {
     let tile_count = tiles(request);
     let items = |count: u32, work_per_item: u32| Over::Items { count, work_per_item };
     let why = "bounds the receivers of each tile, and the shaft between them and the light";
@@ -233,17 +256,29 @@ pub(super) fn append_depths(plan: &mut Plan, request: &Request<'_>, reads: &Read
         .bind("lists", stock.lists)
         .bind("counts", stock.counts);
     let why = "counts the layers over one point of the light";
-    plan.compute("count reference depth", why, REFERENCE_DEPTH, items(scattered(tile_count * TILE), 4))
-        .bind("light_frame", reads.frame)
+    let kernel = if attenuated.is_some() { REFERENCE_DEPTH_ATTENUATED } else { REFERENCE_DEPTH };
+    let pass = plan.compute("count reference depth", why, kernel, items(scattered(tile_count * TILE), 4));
+    pass.bind("light_frame", reads.frame)
         .bind("cluster_range", stock.range)
         .bind("receivers", reads.receivers)
         .bind("faces", stock.faces)
         .bind("edges", stock.edges)
         .bind("first_faces", stock.first_faces)
         .bind("lists", stock.lists)
-        .bind("slots", reads.slots)
-        .bind("blocked", reads.blocked)
-        .bind("counts", stock.counts);
+        .bind("slots", reads.slots);
+    match attenuated {
+        None => pass.bind("blocked", reads.blocked),
+        Some(passing) => pass.bind("triangle_attenuation", passing.triangles),
+    };
+    pass.bind("counts", stock.counts);
+    if let Some(passing) = attenuated {
+        let why = "spreads what passes to that point over all samples";
+        plan.compute("spread reference", why, SPREAD_REFERENCE, items(request.block.count as u32, 4))
+            .bind("light_frame", reads.frame)
+            .bind("attenuation_scale", passing.scale)
+            .bind("slots", reads.slots)
+            .bind("sample_transmittance", passing.samples);
+    }
 }
 
 /// Finds the edges that can be silhouettes at all.

@@ -1,14 +1,16 @@
 //! The parameters of the plans: what changes from light to light and pass to pass.
 
 use softshadow_plan::Values;
+use softshadow_scene::occluders::UNITS_PER_HALVING;
 use softshadow_scene::{Light, LightFrame, LightKind, LightShape, Outline, SampleSpread};
 
 use super::coverage_table::coverage_table;
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
-use super::{DepthComplexity, Evaluation, blended};
+use super::{Attenuation, DepthComplexity, Evaluation, blended};
 use crate::TechniqueError;
 use crate::parts::light_buffers::{self, Sampling};
+use crate::parts::opacity::UNITS_PER_WHOLE;
 use crate::parts::{interleaving, receivers, shading};
 use crate::request::{ReceiverSource, Request};
 
@@ -64,6 +66,23 @@ pub struct FoldSettings {
     group: u32,
     sampling_bound: f32,
     tile_count: u32,
+}
+
+/// `AttenuationScale` of `attenuation.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct AttenuationScale {
+    halvings: f32,
+    shares: f32,
+}
+
+impl AttenuationScale {
+    fn of(attenuation: Attenuation) -> Self {
+        match attenuation {
+            Attenuation::Logarithmic => Self { halvings: (1.0 / UNITS_PER_HALVING) as f32, shares: 0.0 },
+            Attenuation::Sum => Self { halvings: 0.0, shares: (1.0 / UNITS_PER_WHOLE) as f32 },
+        }
+    }
 }
 
 /// The values of the plan's parameters for one light and pass.
@@ -126,6 +145,8 @@ pub(crate) fn values(
         placed.resize(SET_SAMPLES as usize, [0.0; 2]);
         values.insert("sample sets".into(), bytemuck::cast_slice(&placed).to_vec());
     }
+    let scale = AttenuationScale::of(settings.attenuation);
+    values.insert("attenuation scale".into(), bytemuck::bytes_of(&scale).to_vec());
     values.insert("receiver order".into(), bytemuck::cast_slice(&order(request)).to_vec());
     shading::values(request, settings.passes, &mut values);
     if let (Evaluation::Blended, ReceiverSource::Camera(camera)) = (settings.evaluation, request.receivers) {
@@ -142,14 +163,19 @@ pub(super) fn shares_samples(light: &Light, settings: &DepthComplexity) -> bool 
 }
 
 /// Whether the visible area answers: it is asked for, it is what visibility is a share of, and its outline fits. A texture's light is in its
-/// samples, whatever light of the call it belongs to.
+/// samples, whatever light of the call it belongs to; and an area under a layer that lets light through is no visibility.
 pub(super) fn area_answers(request: &Request<'_>, settings: &DepthComplexity) -> bool {
     let fits = match LightFrame::new(request.light, &request.scene.local.frame).outline {
         Some(Outline::Polygon(corners)) => corners.len() <= MOST_CORNERS,
         Some(Outline::Disc(_)) => true,
         None => false,
     };
-    settings.exact_area && fits && request.channels == 1
+    settings.exact_area && fits && request.channels == 1 && !is_attenuated(request)
+}
+
+/// Whether anything semi-opaque lies before the light.
+pub(super) fn is_attenuated(request: &Request<'_>) -> bool {
+    request.occluders.is_some_and(|occluders| occluders.is_semi_opaque)
 }
 
 fn frame_record(frame: &LightFrame, sample_count: u32, corners: usize) -> FrameRecord {

@@ -3,6 +3,7 @@
 pub mod interleaving;
 pub mod light_buffers;
 pub mod occluder_buffers;
+pub mod opacity;
 pub(crate) mod pattern_name;
 pub mod receivers;
 pub mod resolve;

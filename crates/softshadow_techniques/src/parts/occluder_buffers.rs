@@ -1,7 +1,7 @@
 //! What hides one light, as the kernels read it: faces, edges, and a hierarchy over the faces.
 
 use softshadow_plan::Content;
-use softshadow_scene::occluders::{BoundaryEffect, LightBoundary, NO_SIDE, Occluders};
+use softshadow_scene::occluders::{BoundaryEffect, LightBoundary, NO_SIDE, OPAQUE, OccluderEdge, Occluders};
 use softshadow_scene::{BvhNode, Light, LightFrame, LocalScene, Rebuild, SceneError};
 
 /// `Face` of `occluders.wgsl`.
@@ -35,6 +35,9 @@ pub struct IncidentFace {
     flatness: f32,
 }
 
+/// Set in the count of an edge's faces where these differ in opacity.
+pub const UNEQUAL_FACES: u32 = 1 << 31;
+
 /// Everything that can hide one light, and the bytes that go to the device.
 #[derive(Debug, Clone)]
 pub struct OccluderContents {
@@ -50,6 +53,8 @@ pub struct OccluderContents {
     pub incident_faces: Content,
     /// How many edges there are.
     pub edge_count: u32,
+    /// Whether some faces let light through.
+    pub is_semi_opaque: bool,
     /// Triangles that the light's plane cut.
     pub cut_triangles: usize,
     /// Triangles behind the light.
@@ -73,13 +78,13 @@ impl OccluderContents {
     /// says where a shadow ends.
     pub fn new(local: &LocalScene, boundary: LightBoundary) -> Result<Self, SceneError> {
         let triangles: Vec<[[f32; 3]; 3]> = local.triangles().collect();
-        let occluders = Occluders::new(&triangles, |_| 1.0, &boundary)?;
+        let occluders = Occluders::new(&triangles, |triangle| local.opacity(triangle), &boundary)?;
         if !occluders.touching.is_empty() {
             let count = occluders.touching.len();
             let reason = format!("{count} triangles touch it; move them apart, or trace rays");
             return Err(SceneError::Invalid { what: "sphere light".into(), reason });
         }
-        Ok(Self::lay_out(occluders, boundary))
+        Ok(Self::lay_out(local, occluders, boundary))
     }
 
     /// What becomes of these contents of `from` in `to`, a later frame of it, for a light with this boundary and effect on `to`.
@@ -93,10 +98,10 @@ impl OccluderContents {
         boundary: LightBoundary,
         effect: &BoundaryEffect,
     ) -> Result<Self, Rebuild> {
-        Ok(Self::lay_out(self.occluders.moved(from, to, effect)?, boundary))
+        Ok(Self::lay_out(to, self.occluders.moved(from, to, effect)?, boundary))
     }
 
-    fn lay_out(occluders: Occluders, boundary: LightBoundary) -> Self {
+    fn lay_out(local: &LocalScene, occluders: Occluders, boundary: LightBoundary) -> Self {
         let face = |f: &softshadow_scene::occluders::Face| FaceRecord {
             normal: f.normal,
             triangle: f.triangle,
@@ -104,11 +109,11 @@ impl OccluderContents {
             flatness: f.flatness,
             sides: f.sides,
         };
-        let edge = |e: &softshadow_scene::occluders::OccluderEdge| EdgeRecord {
+        let edge = |e: &OccluderEdge| EdgeRecord {
             low: e.low,
             first_incidence: e.first_incidence,
             high: e.high,
-            incidence_count: e.incidence_count,
+            incidence_count: e.incidence_count | if is_unequal(local, &occluders, e) { UNEQUAL_FACES } else { 0 },
         };
         let incident = |i: &u32| {
             let f = &occluders.faces[(i >> 1) as usize];
@@ -132,6 +137,7 @@ impl OccluderContents {
             edges: Content::new(bytemuck::cast_slice(&edges)),
             incident_faces: Content::new(bytemuck::cast_slice(&incident_faces)),
             edge_count: occluders.edges.len() as u32,
+            is_semi_opaque: occluders.faces.iter().any(|face| face.attenuation != OPAQUE),
             cut_triangles: occluders.cut,
             triangles_behind: occluders.behind,
             occluders,
@@ -142,4 +148,12 @@ impl OccluderContents {
     pub fn contents(&self) -> impl Iterator<Item = &Content> {
         [&self.faces, &self.face_tree, &self.edges, &self.incident_faces].into_iter()
     }
+}
+
+/// Whether the faces of an edge differ in opacity: what one adds the other does not take away, whichever sides they are on.
+fn is_unequal(local: &LocalScene, occluders: &Occluders, edge: &OccluderEdge) -> bool {
+    let first = edge.first_incidence as usize;
+    let incidences = &occluders.incidences[first..first + edge.incidence_count as usize];
+    let opacity = |incidence: &u32| local.opacity(occluders.faces[(incidence >> 1) as usize].triangle as usize);
+    incidences.windows(2).any(|pair| opacity(&pair[0]) != opacity(&pair[1]))
 }

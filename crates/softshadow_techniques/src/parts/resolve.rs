@@ -21,9 +21,14 @@ const fn kernel(entry: &'static str) -> Kernel {
 const RESOLVE: Kernel = kernel("resolve");
 const RESOLVE_TEXTURED: Kernel = kernel("resolve_textured");
 const RESOLVE_AREAS: Kernel = kernel("resolve_areas");
+const RESOLVE_ATTENUATED: Kernel = kernel("resolve_attenuated");
+const RESOLVE_ATTENUATED_TEXTURED: Kernel = kernel("resolve_attenuated_textured");
 const KEEP_SAMPLES: Kernel = kernel("keep_samples");
 const KEEP_TEXTURED: Kernel = kernel("keep_textured");
 const KEEP_AREAS: Kernel = kernel("keep_areas");
+const KEEP_ATTENUATED: Kernel = kernel("keep_attenuated");
+const KEEP_ATTENUATED_TEXTURED: Kernel = kernel("keep_attenuated_textured");
+const MASK_SAMPLES: Kernel = Kernel { file: "resolve/mask_samples.wgsl", entry: "mask_samples" };
 
 /// What a technique found out about its samples.
 #[derive(Debug, Clone, Copy)]
@@ -34,6 +39,20 @@ pub struct Masks {
     pub decided: ResourceId,
     /// Visible share of the light's area where that is known, else negative.
     pub areas: Option<ResourceId>,
+    /// What passes to each sample, where that may be a part of the light; else the masks say all.
+    pub transmittance: Option<ResourceId>,
+}
+
+/// What turns masks, or what passes to samples, into values, kept where they are averaged.
+fn kernel_for(masks: &Masks, by_area: bool, textured: bool, averaged: bool) -> Kernel {
+    let [result, kept] = match (masks.transmittance, textured) {
+        (Some(_), false) => [RESOLVE_ATTENUATED, KEEP_ATTENUATED],
+        (Some(_), true) => [RESOLVE_ATTENUATED_TEXTURED, KEEP_ATTENUATED_TEXTURED],
+        (None, true) => [RESOLVE_TEXTURED, KEEP_TEXTURED],
+        (None, false) if by_area => [RESOLVE_AREAS, KEEP_AREAS],
+        (None, false) => [RESOLVE, KEEP_SAMPLES],
+    };
+    if averaged { kept } else { result }
 }
 
 /// Adds the passes from masks to results, and the picture where one is wanted.
@@ -54,17 +73,17 @@ pub fn append(
     // A texture's light is in its samples, not in its area.
     let areas = masks.areas.filter(|_| !textured);
     let averaged = (sampling.spread == SampleSpread::Interleaved).then(|| interleaving::pass_values(plan, request));
-    let [plain, by_area, by_sample] = match averaged {
-        None => [RESOLVE, RESOLVE_AREAS, RESOLVE_TEXTURED],
-        Some(_) => [KEEP_SAMPLES, KEEP_AREAS, KEEP_TEXTURED],
-    };
-    let kernel = if textured { by_sample } else { areas.map_or(plain, |_| by_area) };
+    let kernel = kernel_for(&masks, areas.is_some(), textured, averaged.is_some());
     let why = match averaged {
         None => "turns masks into visibility and its standard error",
         Some(_) => "turns masks into what each pixel sees alone",
     };
     let pass = plan.compute("resolve", why, kernel, over);
-    pass.bind("sampling", light.sampling).bind("blocked", masks.blocked);
+    pass.bind("sampling", light.sampling);
+    match masks.transmittance {
+        Some(transmittance) => pass.bind("sample_transmittance", transmittance),
+        None => pass.bind("blocked", masks.blocked),
+    };
     match averaged {
         None => pass.bind("visibility", visibility).bind("standard_error", standard_error),
         Some(pass_values) => pass.bind("pass_values", pass_values),
@@ -83,7 +102,11 @@ pub fn append(
     match request.wants.picture {
         None => {}
         Some(shading::Shading::Integrated) => {
-            let seen = Seen::Masks { blocked: masks.blocked, decided: masks.decided };
+            let decided = masks.decided;
+            let seen = match masks.transmittance {
+                Some(transmittance) => Seen::Transmittance { transmittance, decided },
+                None => Seen::Masks { blocked: masks.blocked, decided },
+            };
             shading::append(plan, request, receivers, light, seen, sampling);
         }
         // The visibility is known after the last pass only.
@@ -91,6 +114,12 @@ pub fn append(
         Some(shading::Shading::Modulated) => {
             shading::append(plan, request, receivers, light, Seen::Values(visibility), sampling);
         }
+    }
+    if let Some(transmittance) = masks.transmittance.filter(|_| request.closes_light && request.wants.sample_masks) {
+        plan.compute("mask samples", "marks the samples to which nothing passes", MASK_SAMPLES, over)
+            .bind("sampling", light.sampling)
+            .bind("sample_transmittance", transmittance)
+            .bind("blocked", masks.blocked);
     }
     if request.closes_light {
         plan.outputs.push(visibility);

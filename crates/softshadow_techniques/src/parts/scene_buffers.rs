@@ -3,6 +3,7 @@
 use softshadow_plan::{Content, Plan, ResourceId};
 use softshadow_scene::LocalScene;
 
+use crate::parts::opacity::OpacityContents;
 use crate::parts::shading;
 
 /// A local scene and the bytes that go to the device.
@@ -18,6 +19,8 @@ pub struct SceneContents {
     pub triangle_materials: Content,
     /// Materials.
     pub materials: Content,
+    /// Opacities, where not all triangles are opaque.
+    pub opacity: Option<OpacityContents>,
 }
 
 impl SceneContents {
@@ -28,12 +31,14 @@ impl SceneContents {
         let nodes = local.sub_scenes.iter().map(|s| Content::new(bytemuck::cast_slice(&s.nodes))).collect();
         let triangle_materials = Content::new(bytemuck::cast_slice(&local.mesh_ids));
         let materials = shading::material_content(&local.materials);
-        Self { local, corners, nodes, triangle_materials, materials }
+        let opacity = OpacityContents::new(&local);
+        Self { local, corners, nodes, triangle_materials, materials, opacity }
     }
 
     /// All contents, for an engine to upload by key.
     pub fn contents(&self) -> impl Iterator<Item = &Content> {
-        self.corners.iter().chain(&self.nodes).chain([&self.triangle_materials, &self.materials])
+        let opacity = self.opacity.iter().flat_map(OpacityContents::contents);
+        self.corners.iter().chain(&self.nodes).chain([&self.triangle_materials, &self.materials]).chain(opacity)
     }
 }
 

@@ -24,6 +24,7 @@ pub enum Shading {
 pub const COLOR: &str = "color";
 
 const INTEGRATED: Kernel = Kernel { file: "shading/shade.wgsl", entry: "integrated" };
+const INTEGRATED_ATTENUATED: Kernel = Kernel { file: "shading/shade.wgsl", entry: "integrated_attenuated" };
 const MODULATED: Kernel = Kernel { file: "shading/shade.wgsl", entry: "modulated" };
 
 /// `Material` of `shade.wgsl`.
@@ -57,6 +58,13 @@ pub enum Seen {
     Masks {
         /// Words of bits.
         blocked: ResourceId,
+        /// Samples decided for each receiver.
+        decided: ResourceId,
+    },
+    /// What passes to each sample, and how many samples speak for all.
+    Transmittance {
+        /// One share a sample.
+        transmittance: ResourceId,
         /// Samples decided for each receiver.
         decided: ResourceId,
     },
@@ -99,7 +107,7 @@ pub fn append(
     let triangle_materials = plan.uploaded("triangle materials", &request.scene.triangle_materials);
     let materials = plan.uploaded("materials", &request.scene.materials);
     // A final visibility is averaged already.
-    let is_noisy = sampling.spread == SampleSpread::Interleaved && matches!(seen, Seen::Masks { .. });
+    let is_noisy = sampling.spread == SampleSpread::Interleaved && !matches!(seen, Seen::Values(_));
     let added = match is_noisy {
         true => interleaving::noisy_color(plan, request),
         false => plan.persistent(COLOR, request.block.count as u64 * 16),
@@ -107,6 +115,7 @@ pub fn append(
     let over = Over::Items { count: request.block.count as u32, work_per_item: sampling.count / 8 + 1 };
     let (kernel, why) = match seen {
         Seen::Masks { .. } => (INTEGRATED, "adds the light of every sample that is not blocked"),
+        Seen::Transmittance { .. } => (INTEGRATED_ATTENUATED, "adds the light that passes to every sample"),
         Seen::Values(_) => (MODULATED, "adds the light without shadow, times the visibility"),
     };
     let pass = plan.compute("shade", why, kernel, over);
@@ -121,6 +130,9 @@ pub fn append(
         .bind("color", added);
     match seen {
         Seen::Masks { blocked, decided } => pass.bind("blocked", blocked).bind("decided", decided),
+        Seen::Transmittance { transmittance, decided } => {
+            pass.bind("sample_transmittance", transmittance).bind("decided", decided)
+        }
         Seen::Values(visibility) => pass.bind("visibility", visibility),
     };
     if !request.closes_block {

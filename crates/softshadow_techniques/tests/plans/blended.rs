@@ -156,7 +156,7 @@ fn a_block_is_sized_by_no_less_than_a_receiver_takes() {
                     .collect();
                 resources.values().sum::<u64>()
             };
-            let each = technique.bytes_per_receiver(u64::from(channels), 1) + 32;
+            let each = technique.bytes_per_receiver(u64::from(channels), 1, false) + 32;
             let (small, large) = (taken([64, 64]), taken([64, 256]));
             let growth = large - small;
             assert!(growth <= 3 * 64 * 64 * each, "{growth} {each} {settings:?}");

@@ -20,6 +20,16 @@ fn hidden_by(request: &Request<'_>) -> [u64; 3] {
     [faces, faces / 2 * 5, faces * 3]
 }
 
+/// Whether anything semi-opaque hides the light.
+fn is_attenuated(request: &Request<'_>) -> bool {
+    let local = &request.scene.local;
+    let glass = |corner: &[f32; 3]| corner[2] > 0.0;
+    let has_glass = local.triangles().enumerate().any(|(n, t)| local.opacity(n) < 1.0 && t.iter().all(glass));
+    // The rectangle within the scene looks down from between the sheets, and glass is the upper one.
+    let looks_up_to_it = hidden_by(request)[0] == local.triangle_count() as u64;
+    has_glass && looks_up_to_it
+}
+
 /// Who shares samples, and the side of the square that interleaves.
 fn spread(technique: &Technique) -> (SampleSpread, u64) {
     match technique {
@@ -93,6 +103,10 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
     add("visibility".into(), count * 4 * u64::from(request.channels));
     match technique {
         Technique::RayTraced(settings) => {
+            if request.scene.opacity.is_some() {
+                add("triangle transmittance".into(), request.scene.local.triangle_count() as u64 * 4);
+                add("sample transmittance".into(), count * samples * 4);
+            }
             add("blocked samples".into(), count * samples.div_ceil(32) * 4);
             add("decided samples".into(), count * 4);
             add("standard error".into(), count * 4 * u64::from(request.channels));
@@ -169,7 +183,11 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                     }
                 }
                 let outline = LightFrame::new(request.light, &request.scene.local.frame).outline;
-                if settings.exact_area && request.channels == 1 && outline.is_some() {
+                if is_attenuated(request) {
+                    add("attenuation scale".into(), 8);
+                    add("triangle attenuation".into(), request.scene.local.triangle_count() as u64 * 4);
+                    add("sample transmittance".into(), count * samples * 4);
+                } else if settings.exact_area && request.channels == 1 && outline.is_some() {
                     add("visible areas".into(), count * 4);
                     add("light outline".into(), 64 * 16);
                 }
@@ -237,10 +255,10 @@ fn a_block_is_sized_by_what_a_receiver_takes() {
             };
             let sub_scenes = request.scene.local.sub_scenes.len() as u64;
             assert_eq!(sub_scenes, scene as u64);
-            assert_eq!(technique.bytes_per_receiver(u64::from(channels), sub_scenes), expected, "{technique:?}");
+            assert_eq!(technique.bytes_per_receiver(u64::from(channels), sub_scenes, false), expected, "{technique:?}");
             // The receiver and its point take 32 bytes each.
             assert_eq!(total(5) - total(1), 4 * (64 + expected), "{technique:?} in {sub_scenes} sub-scenes");
-            let one_more = technique.bytes_per_receiver(u64::from(channels), sub_scenes + 1);
+            let one_more = technique.bytes_per_receiver(u64::from(channels), sub_scenes + 1, false);
             assert_eq!(one_more - expected, if matches!(technique, Technique::RayTraced(_)) { 24 } else { 0 });
         }
     }
@@ -271,9 +289,9 @@ fn a_block_in_tiles_is_sized_by_no_less_than_a_receiver_takes() {
             assert_eq!(total(64) - total(2), 62 * (with_area - 16));
 
             let sub_scenes = request.scene.local.sub_scenes.len() as u64;
-            let estimate = technique.bytes_per_receiver(u64::from(channels), sub_scenes);
+            let estimate = technique.bytes_per_receiver(u64::from(channels), sub_scenes, false);
             assert_eq!(estimate, alone - 64 + area + 262, "262 is a 64th of what a tile takes, rounded up");
-            assert_eq!(estimate, technique.bytes_per_receiver(u64::from(channels), sub_scenes + 1));
+            assert_eq!(estimate, technique.bytes_per_receiver(u64::from(channels), sub_scenes + 1, false));
             for count in [64 * 64, 100_000, 1_000_003] {
                 let (fixed, taken) = (total(64) - 64 * with_area - tile, total(count));
                 assert!(taken - fixed <= count * (64 + estimate) + 64 * 16 + tile, "{count} receivers, {technique:?}");
@@ -334,5 +352,28 @@ fn another_request_has_other_bytes() {
         let mut shaded = request;
         shaded.wants.picture = Some(Shading::Integrated);
         assert_ne!(counted(&technique, &request), counted(&technique, &shaded));
+    }
+}
+
+#[test]
+fn what_passes_to_samples_is_sized_where_triangles_are_semi_opaque() {
+    let fixture = Fixture::new();
+    for technique in techniques() {
+        let of = |is_semi_opaque| technique.bytes_per_receiver(1, 2, is_semi_opaque);
+        let total = |scene: usize, count: usize| {
+            let mut request = fixture.request(scene, fixture.points());
+            request.block.count = count;
+            technique.plan(&request).memory().iter().map(|(_, bytes)| bytes).sum::<u64>()
+        };
+        // Full tiles: a tile that is not has its slots and lists all the same.
+        let grown = |scene| (total(scene, 65 * 64) - total(scene, 64)) / (64 * 64);
+        // No area is needed under glass; but another light of the call may have none before it.
+        let area = match &technique {
+            Technique::DepthComplexity(settings) if settings.exact_area => 4,
+            _ => 0,
+        };
+        assert_eq!(of(true) - of(false) + grown(2), grown(3) + area, "{technique:?}");
+        let samples = if technique.name() == "hard_shadow_map" { 0 } else { u64::from(technique.samples()) };
+        assert_eq!(of(true) - of(false), 4 * samples);
     }
 }

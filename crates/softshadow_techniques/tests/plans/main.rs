@@ -8,5 +8,6 @@ mod lean;
 mod limits;
 mod program;
 mod requests;
+mod semi_opaque;
 mod snapshots;
 mod spreads;

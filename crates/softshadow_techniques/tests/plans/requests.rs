@@ -9,8 +9,8 @@ use softshadow_scene::{
 };
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
-    Block, DepthComplexity, HardShadowMap, OccluderContents, RayTraced, ReceiverSource, Request, SceneContents,
-    Shading, Technique, Wants,
+    Attenuation, Block, DepthComplexity, HardShadowMap, OccluderContents, RayTraced, ReceiverSource, Request,
+    SceneContents, Shading, Technique, Wants,
 };
 
 /// Width and height of the grid's images.
@@ -20,27 +20,32 @@ pub(crate) const POINTS: usize = 5;
 
 /// Everything that requests refer to.
 pub(crate) struct Fixture {
-    /// Without triangles, with one sub-scene, with two.
-    pub(crate) scenes: [SceneContents; 3],
+    /// Without triangles, with one sub-scene, with two, with two and the upper of two sheets semi-opaque.
+    pub(crate) scenes: [SceneContents; 4],
     pub(crate) camera: Camera,
     pub(crate) points: Points,
     /// A rectangle above the scene, a rectangle within it, a sphere, a sun, a rectangle with a texture, and a sphere that
     /// triangles touch.
     pub(crate) lights: Vec<Light>,
     /// What hides each light, by scene. The last light has nothing where there are triangles: those that touch it have no silhouette.
-    pub(crate) occluders: [Vec<Arc<OccluderContents>>; 3],
+    pub(crate) occluders: [Vec<Arc<OccluderContents>>; 4],
 }
 
 impl Fixture {
     pub(crate) fn new() -> Self {
         let rows = |z: f64| [[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]];
-        let sheet = |z| Mesh::new("sheet", rows(z).to_vec(), vec![[0, 1, 2], [0, 2, 3]], Material::default()).unwrap();
-        let sheets = Scene::new(vec![sheet(0.0), sheet(0.5)]).unwrap();
+        let sheet = |z, opacity| {
+            let material = Material { opacity, ..Material::default() };
+            Mesh::new("sheet", rows(z).to_vec(), vec![[0, 1, 2], [0, 2, 3]], material).unwrap()
+        };
+        let sheets = Scene::new(vec![sheet(0.0, 1.0), sheet(0.5, 1.0)]).unwrap();
+        let glass = Scene::new(vec![sheet(0.0, 1.0), sheet(0.5, 0.25)]).unwrap();
         let contents = |scene: &Scene, binding| SceneContents::new(LocalScene::new(scene, None, binding));
         // Two hierarchy nodes of 32 bytes a triangle: 128 bytes hold two of the four triangles.
+        let empty = Scene::new(Vec::new()).unwrap();
         let scenes =
-            [contents(&Scene::new(Vec::new()).unwrap(), 1 << 20), contents(&sheets, 1 << 20), contents(&sheets, 128)];
-        assert_eq!(scenes.each_ref().map(|s| s.local.sub_scenes.len()), [0, 1, 2]);
+            [contents(&empty, 1 << 20), contents(&sheets, 1 << 20), contents(&sheets, 128), contents(&glass, 128)];
+        assert_eq!(scenes.each_ref().map(|s| s.local.sub_scenes.len()), [0, 1, 2, 2]);
         let down = |from| look_at(from, [0.0, 0.0, -9.0], Some([0.0, 1.0, 0.0])).unwrap();
         let light = |shape, from| Light::new(shape, down(from)).unwrap();
         let rectangle = LightShape::Rectangle { width: 1.0, height: 0.5 };
@@ -57,7 +62,7 @@ impl Fixture {
             let of = |light| OccluderContents::new(&scene.local, boundary_of(&scene.local, light)).ok().map(Arc::new);
             lights.iter().map_while(of).collect::<Vec<_>>()
         });
-        assert_eq!(occluders.each_ref().map(Vec::len), [6, 5, 5], "no other light is refused");
+        assert_eq!(occluders.each_ref().map(Vec::len), [6, 5, 5, 5], "no other light is refused");
         let positions = (0..POINTS).map(|n| [0.1 * n as f64, 0.0, 0.1]).collect();
         Self {
             scenes,
@@ -167,6 +172,8 @@ pub(crate) fn techniques() -> Vec<Technique> {
         silhouettes(33, false, 3),
         silhouettes(256, true, 1),
     ]);
+    let sum = DepthComplexity { attenuation: Attenuation::Sum, ..DepthComplexity::default() };
+    all.push(Technique::DepthComplexity(sum));
     for spread in [SampleSpread::Decorrelated, SampleSpread::Interleaved] {
         let spreads =
             |samples, probes, passes, tile| RayTraced { samples, probes, passes, spread, tile, ..RayTraced::default() };

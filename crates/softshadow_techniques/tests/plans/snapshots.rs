@@ -69,6 +69,23 @@ fn depth_complexity_second_light_within_the_scene() {
 }
 
 #[test]
+fn ray_traced_semi_opaque() {
+    let fixture = Fixture::new();
+    let mut request = fixture.request(3, fixture.points());
+    request.wants.sample_masks = true;
+    insta::assert_snapshot!(traced(8).plan(&request));
+}
+
+#[test]
+fn depth_complexity_semi_opaque() {
+    let fixture = Fixture::new();
+    let mut request = fixture.request(3, fixture.camera());
+    request.wants.picture = Some(Shading::Integrated);
+    request.wants.sample_masks = true;
+    insta::assert_snapshot!(silhouettes(64).plan(&request));
+}
+
+#[test]
 fn depth_complexity_empty_scene() {
     let fixture = Fixture::new();
     insta::assert_snapshot!(silhouettes(64).plan(&fixture.request(0, fixture.points())));

@@ -172,7 +172,7 @@ fn bound(request: &Request<'_>, settings: &DepthComplexity, image: [u32; 2]) -> 
                 lists: plan.buffer("face lists", list_bytes(request)),
                 counts,
             };
-            append_depths(&mut plan, request, &reads, &stock);
+            append_depths(&mut plan, request, &reads, &stock, None);
         }
     }
     plan.clear("no changes", "nothing changes yet", wedges.changes);
@@ -230,7 +230,7 @@ fn count(request: &Request<'_>, settings: &DepthComplexity, image: [u32; 2]) -> 
     }
     let decided = plan.buffer("decided samples", count * 4);
     plan.clear("all samples decided", "every mask speaks for all samples", decided);
-    let masks = Masks { blocked, decided, areas: None };
+    let masks = Masks { blocked, decided, areas: None, transmittance: None };
     resolve::append(&mut plan, request, &settings.sampling(0), &light, receivers, masks);
     plan
 }
