@@ -18,7 +18,7 @@ struct Slot {
     receiver: u32,
     part: u32,       // of its tile
     depth: i32,      // of the reference point, or NO_VIEW
-    reserved: u32,
+    reached: u32,    // node at which a walk over faces goes on
 }
 
 // What the passes over the lists of edges report.

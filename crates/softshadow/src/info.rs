@@ -25,6 +25,8 @@ pub struct Info {
     pub area_receivers: u64,
     /// Silhouette edges in the lists of all tiles, added up over lights and passes.
     pub silhouette_edges: u64,
+    /// What `depth_complexity` folded for each light: `edges`, `triangles`, or `none` where nothing can hide it.
+    pub occluder_units: Vec<&'static str>,
     /// Triangles that the planes of lights cut.
     pub cut_triangles: usize,
     /// Triangles that lie behind lights and were left out for them, added up over lights.

@@ -37,6 +37,7 @@ pub use softshadow_scene::{
     Camera, Dropped, Light, LightShape, LightTexture, Material, Mesh, Points, Receivers, SamplePattern, Scene,
     SceneError, UpAxis, look_at, procedural, scene_file,
 };
+pub use softshadow_techniques::depth_complexity::OccluderUnit;
 pub use softshadow_techniques::{DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError};
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};
 

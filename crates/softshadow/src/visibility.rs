@@ -166,6 +166,9 @@ pub(crate) fn run(
         true => context.occluders(scene, &contents, lights)?,
         false => Vec::new(),
     };
+    if let Technique::DepthComplexity(settings) = technique {
+        collector.result.info.occluder_units = occluders.iter().map(|o| settings.unit.used(o)).collect();
+    }
     collector.result.info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
     collector.result.info.triangles_behind = occluders.iter().map(|o| o.triangles_behind).sum();
     let program = VisibilityProgram {
@@ -291,6 +294,7 @@ impl<'a> Collector<'a> {
             traced_receivers: 0,
             area_receivers: 0,
             silhouette_edges: 0,
+            occluder_units: Vec::new(),
             cut_triangles: 0,
             triangles_behind: 0,
             wall_ms: 0.0,

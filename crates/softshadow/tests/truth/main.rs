@@ -21,6 +21,7 @@ mod pixels;
 mod same_samples;
 mod samples;
 mod shapes;
+mod soups;
 mod sphere_lights;
 mod sub_scenes;
 mod watertight;

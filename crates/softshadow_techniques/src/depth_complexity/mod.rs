@@ -18,8 +18,10 @@
 //! wider suns, whose measure is solid angle, and for no light of a call in which any has a texture. Samples are off as for `ray_traced`. Foliage has no surface to take silhouettes of: every leaf's border is an edge, lists grow long, and the call ends
 //! with an error that names `ray_traced`. Triangles that touch a sphere light are refused.
 
+mod covered;
 mod order;
 mod tiled;
+mod unit;
 mod values;
 
 use serde::{Deserialize, Serialize};
@@ -31,8 +33,11 @@ use crate::parts::pattern_name;
 use crate::parts::resolve::{BLOCKED, Masks};
 use crate::parts::{light_buffers, receivers, resolve};
 use crate::request::Request;
+pub use covered::{CoverSettings, SampleBins};
 pub use tiled::LIST_COUNTS;
 use tiled::{SLOT_BYTES, TILE, tiles};
+pub use unit::OccluderUnit;
+use unit::Unit;
 use values::MOST_SAMPLES;
 pub(crate) use values::values;
 pub use values::{ClusterRange, FoldSettings, FrameRecord};
@@ -52,11 +57,20 @@ pub struct DepthComplexity {
     pub passes: u32,
     /// Whether the light's visible area answers where a single layer hides it.
     pub exact_area: bool,
+    /// What is folded: silhouette edges, or triangles.
+    pub unit: OccluderUnit,
 }
 
 impl Default for DepthComplexity {
     fn default() -> Self {
-        Self { samples: 64, pattern: SamplePattern::Stratified, seed: 0, passes: 1, exact_area: true }
+        Self {
+            samples: 64,
+            pattern: SamplePattern::Stratified,
+            seed: 0,
+            passes: 1,
+            exact_area: true,
+            unit: OccluderUnit::Auto,
+        }
     }
 }
 
@@ -108,7 +122,13 @@ pub(crate) fn plan(request: &Request<'_>, settings: &DepthComplexity) -> Plan {
         .bind("blocked", blocked);
     let reads = Reads { frame, receivers, slots, blocked };
     let occluders = request.occluders.filter(|occluders| occluders.edge_count > 0);
-    let areas = occluders.and_then(|occluders| tiled::append_fold(&mut plan, request, settings, occluders, &reads));
+    let areas = occluders.and_then(|occluders| match settings.unit.of(occluders) {
+        Unit::Edges => tiled::append_fold(&mut plan, request, settings, occluders, &reads),
+        Unit::Triangles => {
+            covered::append_covers(&mut plan, request, settings, occluders, &reads);
+            None
+        }
+    });
 
     let decided = plan.buffer("decided samples", count as u64 * 4);
     plan.clear("all samples decided", "every mask speaks for all samples", decided);

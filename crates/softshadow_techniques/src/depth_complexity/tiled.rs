@@ -26,7 +26,7 @@ const CHUNK_BYTES: u64 = 128;
 /// Chunks of lists that a tile gets on average: 1,920 edges.
 const CHUNKS_PER_TILE: u64 = 64;
 /// Bytes of `ListCounts`.
-const COUNT_BYTES: u64 = 32;
+pub(super) const COUNT_BYTES: u64 = 32;
 /// Bytes of `TilePart`.
 const PART_BYTES: u64 = 112;
 /// Bytes of `Slot`.
@@ -55,7 +55,7 @@ pub(super) fn list_bytes_per_receiver() -> u64 {
 }
 
 /// Items of a pass that takes groups of 64 in strides.
-fn scattered(items: u32) -> u32 {
+pub(super) fn scattered(items: u32) -> u32 {
     items.div_ceil(64).next_multiple_of(STRIDES) * 64
 }
 

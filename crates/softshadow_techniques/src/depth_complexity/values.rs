@@ -3,9 +3,10 @@
 use softshadow_plan::Values;
 use softshadow_scene::{Light, LightFrame, LightKind, LightSamples, Outline, pass_seed};
 
-use super::DepthComplexity;
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
+use super::unit::Unit;
+use super::{DepthComplexity, covered};
 use crate::TechniqueError;
 use crate::parts::light_buffers::{self, SampleSet, Sampling};
 use crate::parts::{receivers, shading};
@@ -115,6 +116,9 @@ pub(crate) fn values(
         };
         values.insert(format!("fold settings {group}"), bytemuck::bytes_of(&fold).to_vec());
         values.insert(format!("group samples {group}"), padded(samples, GROUP as usize));
+    }
+    if let Some(occluders) = request.occluders.filter(|occluders| settings.unit.of(occluders) == Unit::Triangles) {
+        covered::values(request, occluders, &samples, &mut values);
     }
     values.insert("receiver order".into(), bytemuck::cast_slice(&order(request)).to_vec());
     shading::values(request, settings.passes, &mut values);

@@ -50,6 +50,10 @@ pub struct OccluderContents {
     pub incident_faces: Content,
     /// How many edges there are.
     pub edge_count: u32,
+    /// How many of them have one face only.
+    pub border_count: u32,
+    /// How many faces there are.
+    pub face_count: u32,
     /// Triangles that the light's plane cut.
     pub cut_triangles: usize,
     /// Triangles behind the light.
@@ -128,6 +132,8 @@ impl OccluderContents {
             edges: Content::new(bytemuck::cast_slice(&edges)),
             incident_faces: Content::new(bytemuck::cast_slice(&incident_faces)),
             edge_count: occluders.edges.len() as u32,
+            border_count: occluders.edges.iter().filter(|e| e.incidence_count == 1).count() as u32,
+            face_count: occluders.faces.len() as u32,
             cut_triangles: occluders.cut,
             triangles_behind: occluders.behind,
         }

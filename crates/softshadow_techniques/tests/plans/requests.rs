@@ -146,7 +146,14 @@ pub(crate) fn techniques() -> Vec<Technique> {
     all.extend([traced(1, 0, 1), traced(33, 8, 3), traced(64, 63, 1), traced(1000, 0, 2)]);
     let silhouettes = |samples, exact_area, passes| {
         let pattern = if samples % 2 == 0 { SamplePattern::Stratified } else { SamplePattern::LowDiscrepancy };
-        Technique::DepthComplexity(DepthComplexity { samples, exact_area, passes, pattern, seed: 7 })
+        Technique::DepthComplexity(DepthComplexity {
+            samples,
+            exact_area,
+            passes,
+            pattern,
+            seed: 7,
+            ..DepthComplexity::default()
+        })
     };
     all.extend([
         silhouettes(1, true, 2),
