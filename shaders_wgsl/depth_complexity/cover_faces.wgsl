@@ -21,7 +21,7 @@
 @group(0) @binding(4) var<uniform> cover_settings: CoverSettings;
 @group(0) @binding(5) var<storage, read> receivers: array<Receiver>;
 @group(0) @binding(6) var<storage, read> faces: array<TwelveWords>;
-@group(0) @binding(7) var<storage, read> edges: array<EightWords>;
+@group(0) @binding(7) var<storage, read> face_corners: array<TwelveWords>;
 @group(0) @binding(8) var<storage, read> face_tree: array<EightWords>;
 @group(0) @binding(9) var<storage, read_write> slots: array<Slot>;
 @group(0) @binding(10) var<storage, read_write> blocked: array<u32>;
@@ -39,7 +39,7 @@ struct CoverSettings {
 }
 
 // A driver that ends the loops of eight lanes after 65,535 steps together lets each of them take an eighth, less what one leaf can
-// take: four faces of four sides, each with 64 samples, and then some.
+// take: four faces of four sides, each with 64 samples.
 const ROUND_STEPS: u32 = 7000u;
 
 // What rounding can cost an image, as a share of the products before they cancel; with room to spare.
@@ -75,39 +75,40 @@ fn samples_within(eye: Eye, bounds: ImageBounds) -> vec2<u32> {
     let y = strips(from_.y, to.y, sample_bins.scale.y);
     let found = (sample_bins.before[x.y].xy & ~sample_bins.before[x.x].xy)
         & (sample_bins.before[y.y].zw & ~sample_bins.before[y.x].zw);
-    let everywhere = select(found, vec2<u32>(0xffffffffu), !bounds.all_ahead);
-    return select(vec2<u32>(0u), everywhere, bounds.any_ahead && all(bounds.beyond <= vec4<f32>(0.0)));
+    let everywhere = select(vec2<u32>(0xffffffffu), found, bounds.is_ahead);
+    return select(everywhere, vec2<u32>(0u), bounds.beyond);
 }
 
 // The samples that can lie behind a box.
 fn samples_behind_box(eye: Eye, box: TreeNode) -> vec2<u32> {
-    let half = (box.high - box.low) * 0.5;
-    let middle = project(eye.view, (box.low + box.high) * 0.5 - eye.view.position);
-    let x = vec3<f32>(eye.view.x_row.x, eye.view.y_row.x, eye.view.z_row.x) * half.x;
-    let y = vec3<f32>(eye.view.x_row.y, eye.view.y_row.y, eye.view.z_row.y) * half.y;
-    let z = vec3<f32>(eye.view.x_row.z, eye.view.y_row.z, eye.view.z_row.z) * half.z;
-    var bounds = bounds_with(light_frame, no_image(), middle - x - y - z, eye.slack);
-    bounds = bounds_with(light_frame, bounds, middle + x - y - z, eye.slack);
-    bounds = bounds_with(light_frame, bounds, middle - x + y - z, eye.slack);
-    bounds = bounds_with(light_frame, bounds, middle + x + y - z, eye.slack);
-    bounds = bounds_with(light_frame, bounds, middle - x - y + z, eye.slack);
-    bounds = bounds_with(light_frame, bounds, middle + x - y + z, eye.slack);
-    bounds = bounds_with(light_frame, bounds, middle - x + y + z, eye.slack);
-    bounds = bounds_with(light_frame, bounds, middle + x + y + z, eye.slack);
-    return samples_within(eye, bounds);
+    let middle = (box.low + box.high) * 0.5;
+    return samples_within(eye, bounds_of_box(light_frame, eye.view, middle, (box.high - box.low) * 0.5, eye.slack));
 }
 
-// The samples that can lie behind a face; none behind one seen edge-on, and behind the receiver's own. Two sides hold all corners.
-fn samples_behind_face(eye: Eye, face: Face) -> vec2<u32> {
-    let first = edge_of(edges[face.sides.x >> 1u]);
-    let second = edge_of(edges[select(face.sides.z, face.sides.y, face.sides.w == NO_SIDE) >> 1u]);
-    let p = eye.view.position;
-    var bounds = bounds_with(light_frame, no_image(), project(eye.view, first.low - p), eye.slack);
-    bounds = bounds_with(light_frame, bounds, project(eye.view, first.high - p), eye.slack);
-    bounds = bounds_with(light_frame, bounds, project(eye.view, second.low - p), eye.slack);
-    bounds = bounds_with(light_frame, bounds, project(eye.view, second.high - p), eye.slack);
-    let side = side_of_plane(face.normal, face.point, face.flatness, p);
-    return select(samples_within(eye, bounds), vec2<u32>(0u), side == 0 || face.triangle == eye.triangle);
+// Corners of a face in the order of its sides; a triangle comes back to its first.
+struct Corners {
+    a: vec3<f32>,
+    b: vec3<f32>,
+    c: vec3<f32>,
+    d: vec3<f32>,
+}
+
+fn corners_of(words: TwelveWords) -> Corners {
+    return Corners(
+        bitcast<vec3<f32>>(words.first.xyz),
+        bitcast<vec3<f32>>(vec3<u32>(words.first.w, words.second.xy)),
+        bitcast<vec3<f32>>(vec3<u32>(words.second.zw, words.third.x)),
+        bitcast<vec3<f32>>(words.third.yzw),
+    );
+}
+
+// The samples that can lie behind a face.
+fn samples_behind_face(eye: Eye, corners: Corners) -> vec2<u32> {
+    let a = project(eye.view, corners.a - eye.view.position);
+    let b = project(eye.view, corners.b - eye.view.position);
+    let c = project(eye.view, corners.c - eye.view.position);
+    let d = project(eye.view, corners.d - eye.view.position);
+    return samples_within(eye, bounds_of_corners(light_frame, a, b, c, d, eye.slack));
 }
 
 fn one_bit(i: u32) -> vec2<u32> {
@@ -123,7 +124,7 @@ fn has_any(mask: vec2<u32>) -> bool {
     return (mask.x | mask.y) != 0u;
 }
 
-// Those samples of `waiting` on whose way from the reference point an edge lies.
+// Those samples on whose way from the reference point an edge lies.
 fn crossed(eye: Eye, image: EdgeImage, samples: vec2<u32>) -> vec2<u32> {
     let crossing = crossing_of(image);
     var mask = vec2<u32>(0u);
@@ -187,25 +188,34 @@ fn cover_faces(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let first = leaf >> LEAF_BITS;
         let count = leaf & ((1u << LEAF_BITS) - 1u);
         for (var f = first; f < first + count; f++) {
-            let face = face_of(faces[f]);
-            let near = samples_behind_face(eye, face) & seen;
+            var corners = corners_of(face_corners[f]);
+            let near = samples_behind_face(eye, corners) & seen;
             // Drivers on the CPU run both sides of a branch, and skip loops only.
-            var k = select(4u, 0u, has_any(near));
-            steps += 2u + select(0u, 8u + 4u * (countOneBits(near.x) + countOneBits(near.y)), k == 0u);
-            var border = no_loop();
-            var mask = vec2<u32>(0u);
-            while (k < 4u) {
-                let reference = face.sides[k];
-                k++;
-                if (reference != NO_SIDE) {
-                    let edge = edge_of(edges[reference >> 1u]);
+            var waiting = has_any(near);
+            steps += 2u + select(0u, 9u + 4u * (countOneBits(near.x) + countOneBits(near.y)), waiting);
+            while (waiting) {
+                waiting = false;
+                let face = face_of(faces[f]);
+                let side = side_of_plane(face.normal, face.point, face.flatness, eye.view.position);
+                // One seen edge-on hides nothing, nor does the receiver's own.
+                let hides = side != 0 && face.triangle != eye.triangle;
+                var border = no_loop();
+                var mask = vec2<u32>(0u);
+                for (var k = 0u; k < select(0u, 4u, hides); k++) {
+                    let reference = face.sides[k];
+                    let is_forward = (reference & 1u) == 0u;
+                    let edge = OccluderEdge(select(corners.b, corners.a, is_forward), 0u, select(corners.a, corners.b, is_forward), 0u);
                     let image = edge_image(eye.view, edge);
-                    border = with_image(border, image, (reference & 1u) == 0u);
-                    mask ^= crossed(eye, before_limit(eye.view, edge, image), near);
+                    let exists = reference != NO_SIDE;
+                    if (exists) {
+                        border = with_image(border, image, is_forward);
+                    }
+                    mask ^= crossed(eye, before_limit(eye.view, edge, image), select(vec2<u32>(0u), near, exists));
+                    corners = Corners(corners.b, corners.c, corners.d, corners.a);
                 }
+                let covers = (cover(eye.view, face, border) & 1) != 0;
+                seen &= ~select(vec2<u32>(0u), select(mask, ~mask, covers) & near, hides);
             }
-            let covers = (cover(eye.view, face, border) & 1) != 0;
-            seen &= ~(select(mask, ~mask, covers) & near);
         }
     }
     let hidden = all & ~seen;

@@ -13,29 +13,48 @@ struct SampleBins {
 struct ImageBounds {
     low: vec2<f32>,
     high: vec2<f32>,
-    any_ahead: bool,
-    all_ahead: bool,     // else the image runs out to infinity
-    beyond: vec4<f32>,   // positive where all points lie right, left, above or below the light, wherever they are
+    is_ahead: bool,      // else some of it lies beside or behind the receiver, and its image runs out to infinity
+    beyond: bool,        // all of it lies behind the receiver, or to one side of the light
 }
 
-fn no_image() -> ImageBounds {
-    return ImageBounds(vec2<f32>(1e30), vec2<f32>(-1e30), false, true, vec4<f32>(1e30));
+// A box of this middle and half size. `slack` is what rounding can have cost the image of a point.
+//
+// Distances from the image of the middle: (x - q·z) / z, where the numerator is 0 in the middle.
+fn bounds_of_box(frame: LightFrame, view: FrameView, middle: vec3<f32>, half: vec3<f32>, slack: vec3<f32>) -> ImageBounds {
+    let at = project(view, middle - view.position);
+    let depth = dot(abs(view.z_row), half) + slack.z;
+    let nearest = at.z - depth;
+    let q = at.xy / max(at.z, 1e-37);
+    let x = dot(abs(view.x_row - view.z_row * q.x), half) + slack.x + abs(q.x) * slack.z;
+    let y = dot(abs(view.y_row - view.z_row * q.y), half) + slack.y + abs(q.y) * slack.z;
+    let reach = vec2<f32>(x, y) / max(nearest, 1e-37);
+    let right = at.x - frame.high.x * at.z > dot(abs(view.x_row - view.z_row * frame.high.x), half) + slack.x + abs(frame.high.x) * slack.z;
+    let left = frame.low.x * at.z - at.x > dot(abs(view.x_row - view.z_row * frame.low.x), half) + slack.x + abs(frame.low.x) * slack.z;
+    let over = at.y - frame.high.y * at.z > dot(abs(view.y_row - view.z_row * frame.high.y), half) + slack.y + abs(frame.high.y) * slack.z;
+    let under = frame.low.y * at.z - at.y > dot(abs(view.y_row - view.z_row * frame.low.y), half) + slack.y + abs(frame.low.y) * slack.z;
+    return ImageBounds(q - reach, q + reach, nearest > 0.0, right || left || over || under || at.z + depth <= 0.0);
 }
 
-// `slack` is what rounding can have cost the image of a point.
-fn bounds_with(frame: LightFrame, before: ImageBounds, image: vec3<f32>, slack: vec3<f32>) -> ImageBounds {
-    let share = 1.0 / max(image.z - slack.z, 1e-37);
-    let at = image.xy / max(image.z, 1e-37);
-    let light = vec4<f32>(frame.high.x, -frame.low.x, frame.high.y, -frame.low.y);
-    let across = vec4<f32>(image.x, -image.x, image.y, -image.y);
-    let pad = (slack.xy + abs(at) * slack.z) * share;
-    return ImageBounds(
-        min(before.low, at - pad),
-        max(before.high, at + pad),
-        before.any_ahead || image.z + slack.z > 0.0,
-        before.all_ahead && image.z > slack.z,
-        min(before.beyond, across - light * image.z - slack.xxyy - abs(light) * slack.z),
-    );
+// Four corners.
+fn bounds_of_corners(frame: LightFrame, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, d: vec3<f32>, slack: vec3<f32>) -> ImageBounds {
+    let x = vec4<f32>(a.x, b.x, c.x, d.x);
+    let y = vec4<f32>(a.y, b.y, c.y, d.y);
+    let z = vec4<f32>(a.z, b.z, c.z, d.z);
+    let nearest = least(z) - slack.z;
+    let share = 1.0 / max(z, vec4<f32>(1e-37));
+    let low = vec2<f32>(least(x * share), least(y * share));
+    let high = vec2<f32>(-least(-x * share), -least(-y * share));
+    let pad = (slack.xy + max(abs(low), abs(high)) * slack.z) / max(nearest, 1e-37);
+    let right = least(x - frame.high.x * z) > slack.x + abs(frame.high.x) * slack.z;
+    let left = least(frame.low.x * z - x) > slack.x + abs(frame.low.x) * slack.z;
+    let over = least(y - frame.high.y * z) > slack.y + abs(frame.high.y) * slack.z;
+    let under = least(frame.low.y * z - y) > slack.y + abs(frame.low.y) * slack.z;
+    let is_behind = -least(-z) + slack.z <= 0.0;
+    return ImageBounds(low - pad, high + pad, nearest > 0.0, right || left || over || under || is_behind);
+}
+
+fn least(v: vec4<f32>) -> f32 {
+    return min(min(v.x, v.y), min(v.z, v.w));
 }
 
 // The first strip that bounds reach into, and the one after the last.

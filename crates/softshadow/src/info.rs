@@ -29,6 +29,8 @@ pub struct Info {
     pub occluder_units: Vec<&'static str>,
     /// Triangles that the planes of lights cut.
     pub cut_triangles: usize,
+    /// Triangles that touch balls of light and were tried sample by sample, added up over lights; by `depth_complexity` only.
+    pub touching_triangles: usize,
     /// Triangles that lie behind lights and were left out for them, added up over lights.
     pub triangles_behind: usize,
     /// Wall time from plan to values in milliseconds.

@@ -1,11 +1,13 @@
 //! Soups of triangles: `depth_complexity` triangle by triangle against edges and rays to the same samples.
 
 use softshadow::{
-    DepthComplexity, Light, LightShape, OccluderUnit, Receivers, Scene, Technique, Visibility, look_at, procedural,
+    Camera, DepthComplexity, Error, Light, LightShape, OccluderUnit, Options, Receivers, Scene, Technique, Visibility,
+    look_at, visibility,
 };
 
-use crate::common::{Random, lamp, points, ray_traced, rectangle, see, shipped, surface_points};
-use crate::shapes::{Point, Triangle, scene, sphere, torus};
+use crate::agreement::Truth;
+use crate::common::{Random, context, lamp, points, ray_traced, rays, rectangle, see, shipped, surface_points};
+use crate::shapes::{Triangle, scene, sphere, torus};
 
 fn unit(samples: u32, unit: OccluderUnit) -> Technique {
     Technique::DepthComplexity(DepthComplexity { samples, exact_area: false, unit, ..DepthComplexity::default() })
@@ -27,7 +29,7 @@ fn triangles_and_edges_have_the_same_bits_on_shipped_scenes() {
     for name in ["fork", "cards", "toruses", "hall"] {
         let (scene, light, camera) = shipped(name, [160, 120]);
         let run = |technique| see(&scene, std::slice::from_ref(&light), &Receivers::Camera(camera.clone()), &technique);
-        println!("{name}");let (edges, triangles) = (run(unit(64, OccluderUnit::Edges)), run(unit(64, OccluderUnit::Triangles)));
+        let (edges, triangles) = (run(unit(64, OccluderUnit::Edges)), run(unit(64, OccluderUnit::Triangles)));
         let (differ, hidden) = differences(&edges, &triangles, 64);
         let from_rays = differences(&run(ray_traced(64)), &triangles, 64).0;
         println!("{name}: {differ} samples differ from edges, {from_rays} from rays, {hidden} hidden");
@@ -72,6 +74,198 @@ fn every_light_and_count_of_samples_has_the_bits_of_edges() {
                 let (differ, hidden) = differences(&edges, &triangles, samples);
                 assert!(hidden > 200 * samples, "{:?}: {hidden}", light.shape());
                 assert_eq!(differ, 0, "{:?}, {samples} samples", light.shape());
+            }
+        }
+    }
+}
+
+/// Leaves of two triangles each, anyhow in a ball of radius 0.8 around the origin.
+fn leaves(count: usize) -> Vec<Triangle> {
+    let mut random = Random(21);
+    let mut soup = Vec::new();
+    while soup.len() < 2 * count {
+        let [x, y, z] = random.point([-0.8, 0.8], [-0.8, 0.8], [-0.8, 0.8]);
+        if x * x + y * y + z * z > 0.64 {
+            continue;
+        }
+        let way = |random: &mut Random| random.point([-0.05, 0.05], [-0.05, 0.05], [-0.05, 0.05]);
+        let (u, v) = (way(&mut random), way(&mut random));
+        let corner = |a: f64, b: f64| [x + a * u[0] + b * v[0], y + a * u[1] + b * v[1], z + a * u[2] + b * v[2]];
+        soup.push([corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0)]);
+        soup.push([corner(-1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]);
+    }
+    soup
+}
+
+#[test]
+fn a_soup_of_leaves_has_the_samples_of_rays_and_of_float64() {
+    let soup = scene(&leaves(1500));
+    // Under the leaves, and among them.
+    let under = Random(22).points(400, [-1.5, 1.5], [-1.5, 1.5], [-1.2, -0.9]);
+    let among = Random(23).points(400, [-0.6, 0.6], [-0.6, 0.6], [-0.6, 0.6]);
+    let receivers = surface_points([under, among].concat(), [0.1, 0.2, 0.9]);
+    let (mut differ, mut all) = (0, 0);
+    for light in &lights()[..5] {
+        for samples in [40, 64, 256] {
+            let lights = std::slice::from_ref(light);
+            let seen = see(&soup, lights, &receivers, &unit(samples, OccluderUnit::Auto));
+            assert_eq!(seen.info.occluder_units, ["triangles"]);
+            let (from_rays, hidden) =
+                differences(&see(&soup, lights, &receivers, &ray_traced(samples)), &seen, samples);
+            assert!(hidden > 200 * samples && hidden < 700 * samples, "{hidden}");
+            if samples == 64 {
+                let found = Truth::of(&soup).compare(&soup, light, &rays(samples), &seen);
+                assert_eq!(found.differing, 0, "{:?}: {found:?}", light.shape());
+            }
+            (differ, all) = (differ + from_rays, all + 800 * samples);
+        }
+    }
+    println!("leaves: {differ} of {all} samples differ from rays");
+    assert!(differ <= all / 100_000, "{differ} of {all}");
+}
+
+#[test]
+fn the_comparison_sees_a_leaf_that_moved() {
+    let soup = scene(&leaves(1500));
+    let receivers = points(Random(22).points(400, [-1.5, 1.5], [-1.5, 1.5], [-1.2, -0.9]));
+    let light = &lights()[0];
+    let seen = see(&soup, std::slice::from_ref(light), &receivers, &unit(64, OccluderUnit::Triangles));
+    let moved = Truth::with(&soup, |local| local[0].iter_mut().for_each(|p| p[0] += 0.01));
+    let found = moved.compare(&soup, light, &rays(64), &seen);
+    assert!(found.differing > 0, "{found:?}");
+}
+
+#[test]
+fn foliage_is_folded_triangle_by_triangle() {
+    let (canopy, _, _) = shipped("canopy", [8, 8]);
+    let light = Light::new(rectangle(2.0, 2.0), look_at([0.0, 5.0, 0.0], [0.0; 3], None).unwrap()).unwrap();
+    let camera = Camera::look_at([2.6, 2.4, 3.6], [0.0, 0.85, 0.0], None, 40.0, [64, 64]).unwrap();
+    let (lights, receivers) = (std::slice::from_ref(&light), Receivers::Camera(camera));
+    let seen = see(&canopy, lights, &receivers, &Technique::DepthComplexity(DepthComplexity::default()));
+    assert_eq!((seen.info.occluder_units.as_slice(), seen.info.area_receivers), (&["triangles"][..], 0));
+    assert!(seen.info.plan.contains("cover triangles") && !seen.info.plan.contains("silhouettes"));
+    let (differ, hidden) = differences(&see(&canopy, lights, &receivers, &ray_traced(64)), &seen, 64);
+    println!("canopy: {differ} of {} samples differ from rays", 64 * 64 * 64);
+    assert!(hidden > 50_000 && differ <= 2, "{differ} of {hidden}");
+    // Edges are refused, with the way out.
+    let edges = unit(64, OccluderUnit::Edges);
+    let options = Options::default();
+    let refused = visibility(context(), &canopy, lights, &receivers, &edges, &options, &mut |_, _| true).unwrap_err();
+    let says = |words: &str| matches!(&refused, Error::Gpu(text) if text.contains(words));
+    assert!(says("unit triangles") && says("use ray_traced"), "{refused}");
+}
+
+#[test]
+fn bodies_are_folded_edge_by_edge() {
+    for (scene, expected) in [(bodies(), "edges"), (scene(&leaves(200)), "edges"), (scene(&leaves(500)), "triangles")] {
+        let technique = Technique::DepthComplexity(DepthComplexity { samples: 1, ..DepthComplexity::default() });
+        let seen = see(&scene, &lights()[..1], &points(vec![[0.0, 0.0, -5.0]]), &technique);
+        assert_eq!(seen.info.occluder_units, [expected]);
+    }
+}
+
+#[test]
+fn triangles_that_touch_a_lamp_are_tried_sample_by_sample() {
+    // The lamp sits in the ring and in the ball over it.
+    let light = lamp(LightShape::Sphere { radius: 0.4 }, [0.2, 0.1, 0.3]);
+    let lights = std::slice::from_ref(&light);
+    let scene = bodies();
+    let around = Random(24).points(1500, [-1.5, 1.5], [-1.5, 1.5], [-1.2, 1.8]);
+    for receivers in [points(around.clone()), surface_points(around, [0.1, 0.3, 0.9])] {
+        for samples in [1, 40, 64, 256] {
+            let traced = see(&scene, lights, &receivers, &ray_traced(samples));
+            for kind in [OccluderUnit::Edges, OccluderUnit::Triangles] {
+                let seen = see(&scene, lights, &receivers, &unit(samples, kind));
+                assert!(seen.info.touching_triangles > 50 && seen.info.plan.contains("try touching triangles"));
+                let (differ, hidden) = differences(&traced, &seen, samples);
+                assert!(hidden > 200 * samples, "{hidden}");
+                assert!(differ <= samples / 64, "{kind:?}, {samples} samples: {differ} of {hidden} differ");
+                if samples != 64 {
+                    continue;
+                }
+                let honest = Truth::of(&scene);
+                let found = honest.compare(&scene, &light, &rays(samples), &seen);
+                assert_eq!(found.differing, 0, "{kind:?}: {found:?}");
+                // Without those that touch, samples differ.
+                let frame = &honest.local.frame;
+                let [center, border] = [0.2, 0.6].map(|x| frame.local_from_world([x, 0.1, 0.3]));
+                let touches = |t: &Triangle| t.iter().any(|p| center.distance((*p).into()) < center.distance(border));
+                let away = |t: &mut Triangle| t.iter_mut().for_each(|p| p[2] -= 1e3);
+                let bare = Truth::with(&scene, |local| local.iter_mut().filter(|t| touches(t)).for_each(away));
+                let found = bare.compare(&scene, &light, &rays(samples), &seen);
+                assert!(found.differing > 100, "{kind:?}: {found:?}");
+            }
+        }
+    }
+}
+
+// SCRATCH
+fn cpu_ms() -> f64 {
+    let tasks = std::fs::read_dir("/proc/self/task").unwrap();
+    let ns: u64 = tasks
+        .filter_map(|t| std::fs::read_to_string(t.unwrap().path().join("schedstat")).ok())
+        .map(|t| t.split(' ').next().unwrap().parse::<u64>().unwrap())
+        .sum();
+    ns as f64 / 1e6
+}
+
+#[test]
+#[ignore]
+fn measure() {
+    let size: u32 = std::env::var("SIZE").map_or(64, |s| s.parse().unwrap());
+    let name = std::env::var("SCENE").unwrap_or("canopy".into());
+    let (scene, mut light, camera) = shipped(&name, [size, size]);
+    let mut camera = camera;
+    if name == "canopy" {
+        light = Light::new(rectangle(2.0, 2.0), look_at([0.0, 5.0, 0.0], [0.0; 3], None).unwrap()).unwrap();
+        camera = softshadow::Camera::look_at([2.6, 2.4, 3.6], [0.0, 0.85, 0.0], None, 40.0, [size, size]).unwrap();
+    }
+    let receivers = Receivers::Camera(camera);
+    let lights = std::slice::from_ref(&light);
+    let options = softshadow::Options::default();
+    let run = |technique: &Technique| {
+        let before = cpu_ms();
+        let start = std::time::Instant::now();
+        let seen = softshadow::visibility(
+            crate::common::context(),
+            &scene,
+            lights,
+            &receivers,
+            technique,
+            &options,
+            &mut |_, _| true,
+        );
+        (seen, cpu_ms() - before, start.elapsed().as_secs_f64() * 1e3)
+    };
+    let refs = Technique::RayTraced(softshadow::RayTraced {
+        samples: 256,
+        seed: 991,
+        passes: if size > 128 { 2 } else { 8 },
+        ..Default::default()
+    });
+    let reference = run(&refs).0.unwrap();
+    let rounds: usize = std::env::var("ROUNDS").map_or(2, |s| s.parse().unwrap());
+    for round in 0..=rounds {
+        for samples in [16, 64, 256] {
+            let mut rows = vec![("rays", ray_traced(samples)), ("triangles", unit(samples, OccluderUnit::Triangles))];
+            if std::env::var("EDGES").is_ok() {
+                rows.push(("edges", unit(samples, OccluderUnit::Edges)));
+            }
+            for (label, technique) in rows {
+                let (seen, cpu, wall) = run(&technique);
+                match seen {
+                    Ok(seen) => {
+                        let pairs =
+                            || seen.values.iter().zip(&reference.values).filter(|(_, r)| **r > 0.002 && **r < 0.998);
+                        let n = pairs().count();
+                        let rmse = (pairs().map(|(a, r)| f64::from(a - r).powi(2)).sum::<f64>() / n as f64).sqrt();
+                        println!(
+                            "{round} {name} {size} {label} {samples}: cpu {cpu:.0} ms wall {wall:.0} ms device {:.0} rmse {rmse:.4} ({n} penumbra of {})",
+                            seen.info.wall_ms, seen.info.valid_receivers
+                        );
+                    }
+                    Err(error) => println!("{round} {label} {samples}: cpu {cpu:.0} ms {error}"),
+                }
             }
         }
     }

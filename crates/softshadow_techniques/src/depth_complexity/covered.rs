@@ -15,7 +15,7 @@ const BINS: usize = 64;
 /// Steps of one round.
 const ROUND_STEPS: u64 = 7000;
 /// Steps that a face takes at most: its own, its leaf's, and four sides of 64 samples each.
-const FACE_STEPS: u64 = 13 + 4 * 64;
+const FACE_STEPS: u64 = 14 + 4 * 64;
 /// Rounds at most. A receiver that needs more is reported.
 const MOST_ROUNDS: u64 = 16;
 
@@ -75,7 +75,7 @@ pub(super) fn append_covers(
 ) {
     let faces = plan.uploaded("faces", &occluders.faces);
     let face_tree = plan.uploaded("face hierarchy", &occluders.face_tree);
-    let edges = plan.uploaded("edges", &occluders.edges);
+    let face_corners = plan.uploaded("corners of faces", &occluders.face_corners);
     let counts = plan.buffer("running counts", COUNT_BYTES);
     plan.clear("no counts", "nothing is counted yet", counts);
     for group in 0..settings.samples.div_ceil(GROUP) {
@@ -96,7 +96,7 @@ pub(super) fn append_covers(
                 .bind("cover_settings", cover_settings)
                 .bind("receivers", reads.receivers)
                 .bind("faces", faces)
-                .bind("edges", edges)
+                .bind("face_corners", face_corners)
                 .bind("face_tree", face_tree)
                 .bind("slots", reads.slots)
                 .bind("blocked", reads.blocked)

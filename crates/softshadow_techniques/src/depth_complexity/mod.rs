@@ -21,6 +21,7 @@
 mod covered;
 mod order;
 mod tiled;
+mod touching;
 mod unit;
 mod values;
 
@@ -36,6 +37,7 @@ use crate::request::Request;
 pub use covered::{CoverSettings, SampleBins};
 pub use tiled::LIST_COUNTS;
 use tiled::{SLOT_BYTES, TILE, tiles};
+pub use touching::TouchingRange;
 pub use unit::OccluderUnit;
 use unit::Unit;
 use values::MOST_SAMPLES;
@@ -129,6 +131,8 @@ pub(crate) fn plan(request: &Request<'_>, settings: &DepthComplexity) -> Plan {
             None
         }
     });
+
+    touching::append(&mut plan, request, settings, &light, receivers, blocked);
 
     let decided = plan.buffer("decided samples", count as u64 * 4);
     plan.clear("all samples decided", "every mask speaks for all samples", decided);

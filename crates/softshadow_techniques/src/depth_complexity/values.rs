@@ -6,7 +6,7 @@ use softshadow_scene::{Light, LightFrame, LightKind, LightSamples, Outline, pass
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
 use super::unit::Unit;
-use super::{DepthComplexity, covered};
+use super::{DepthComplexity, covered, touching};
 use crate::TechniqueError;
 use crate::parts::light_buffers::{self, SampleSet, Sampling};
 use crate::parts::{receivers, shading};
@@ -117,8 +117,11 @@ pub(crate) fn values(
         values.insert(format!("fold settings {group}"), bytemuck::bytes_of(&fold).to_vec());
         values.insert(format!("group samples {group}"), padded(samples, GROUP as usize));
     }
-    if let Some(occluders) = request.occluders.filter(|occluders| settings.unit.of(occluders) == Unit::Triangles) {
-        covered::values(request, occluders, &samples, &mut values);
+    if let Some(occluders) = request.occluders {
+        if settings.unit.of(occluders) == Unit::Triangles {
+            covered::values(request, occluders, &samples, &mut values);
+        }
+        touching::values(occluders, &mut values);
     }
     values.insert("receiver order".into(), bytemuck::cast_slice(&order(request)).to_vec());
     shading::values(request, settings.passes, &mut values);

@@ -1,8 +1,8 @@
 //! What hides one light, as the kernels read it: faces, edges, and a hierarchy over the faces.
 
 use softshadow_plan::Content;
-use softshadow_scene::occluders::{LightBoundary, NO_SIDE, Occluders};
-use softshadow_scene::{BvhNode, Light, LightFrame, LocalScene, SceneError};
+use softshadow_scene::occluders::{Face, LightBoundary, NO_SIDE, OccluderEdge, Occluders, TouchingTriangle};
+use softshadow_scene::{BvhNode, Corner, Light, LightFrame, LocalScene, SceneError};
 
 /// `Face` of `occluders.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -35,6 +35,24 @@ pub struct IncidentFace {
     flatness: f32,
 }
 
+/// Triangles that touch a ball of light.
+#[derive(Debug, Clone)]
+pub struct TouchingContents {
+    /// Three corners each.
+    pub corners: Content,
+    /// How many there are.
+    pub count: u32,
+}
+
+impl TouchingContents {
+    fn new(triangles: &[TouchingTriangle]) -> Option<Self> {
+        let corners = |t: &TouchingTriangle| t.corners.map(|position| Corner { position, triangle: t.triangle });
+        let corners: Vec<Corner> = triangles.iter().flat_map(corners).collect();
+        let count = triangles.len() as u32;
+        (count > 0).then(|| Self { corners: Content::new(bytemuck::cast_slice(&corners)), count })
+    }
+}
+
 /// Everything that can hide one light, and the bytes that go to the device.
 #[derive(Debug, Clone)]
 pub struct OccluderContents {
@@ -42,12 +60,16 @@ pub struct OccluderContents {
     pub boundary: LightBoundary,
     /// Faces.
     pub faces: Content,
+    /// Four corners of each, in the order of its sides; a triangle comes back to its first.
+    pub face_corners: Content,
     /// Their hierarchy.
     pub face_tree: Content,
     /// Edges.
     pub edges: Content,
     /// Faces at the edges, each edge's together.
     pub incident_faces: Content,
+    /// Triangles that touch a ball of light, where there are any: no edge says where their shadows end.
+    pub touching: Option<TouchingContents>,
     /// How many edges there are.
     pub edge_count: u32,
     /// How many of them have one face only.
@@ -83,28 +105,22 @@ impl OccluderContents {
     /// Cuts a scene at a light's boundary and lays it out.
     ///
     /// # Errors
-    /// [`SceneError::TooLarge`] for too many triangles, and [`SceneError::Invalid`] where triangles touch a ball of light: there no edge
-    /// says where a shadow ends.
+    /// [`SceneError::TooLarge`] for too many triangles.
     pub fn new(local: &LocalScene, boundary: LightBoundary) -> Result<Self, SceneError> {
         let triangles: Vec<[[f32; 3]; 3]> = local.triangles().collect();
         let occluders = Occluders::new(&triangles, |_| 1.0, &boundary)?;
-        if !occluders.touching.is_empty() {
-            let count = occluders.touching.len();
-            let reason = format!("{count} triangles touch it; move them apart, or trace rays");
-            return Err(SceneError::Invalid { what: "sphere light".into(), reason });
-        }
         Ok(Self::lay_out(&occluders, boundary))
     }
 
     fn lay_out(occluders: &Occluders, boundary: LightBoundary) -> Self {
-        let face = |f: &softshadow_scene::occluders::Face| FaceRecord {
+        let face = |f: &Face| FaceRecord {
             normal: f.normal,
             triangle: f.triangle,
             point: f.point,
             flatness: f.flatness,
             sides: f.sides,
         };
-        let edge = |e: &softshadow_scene::occluders::OccluderEdge| EdgeRecord {
+        let edge = |e: &OccluderEdge| EdgeRecord {
             low: e.low,
             first_incidence: e.first_incidence,
             high: e.high,
@@ -115,12 +131,15 @@ impl OccluderContents {
             IncidentFace { normal: f.normal, reference: f.triangle << 1 | i & 1, point: f.point, flatness: f.flatness }
         };
         let mut faces: Vec<FaceRecord> = occluders.faces.iter().map(face).collect();
+        let mut face_corners: Vec<[[f32; 3]; 4]> =
+            occluders.faces.iter().map(|f| corners(f, &occluders.edges)).collect();
         let mut edges: Vec<EdgeRecord> = occluders.edges.iter().map(edge).collect();
         let mut incident_faces: Vec<IncidentFace> = occluders.incidences.iter().map(incident).collect();
         let mut nodes = occluders.face_tree.nodes.clone();
         // A binding must not be empty: a face without sides covers nothing, and a box inside out is never met.
         if faces.is_empty() {
             faces.push(FaceRecord { sides: [NO_SIDE; 4], ..bytemuck::Zeroable::zeroed() });
+            face_corners.push([[0.0; 3]; 4]);
             edges.push(bytemuck::Zeroable::zeroed());
             incident_faces.push(bytemuck::Zeroable::zeroed());
             nodes.push(BvhNode { low: [1e30; 3], skip: 1, high: [-1e30; 3], leaf: 0 });
@@ -128,9 +147,11 @@ impl OccluderContents {
         Self {
             boundary,
             faces: Content::new(bytemuck::cast_slice(&faces)),
+            face_corners: Content::new(bytemuck::cast_slice(&face_corners)),
             face_tree: Content::new(bytemuck::cast_slice(&nodes)),
             edges: Content::new(bytemuck::cast_slice(&edges)),
             incident_faces: Content::new(bytemuck::cast_slice(&incident_faces)),
+            touching: TouchingContents::new(&occluders.touching),
             edge_count: occluders.edges.len() as u32,
             border_count: occluders.edges.iter().filter(|e| e.incidence_count == 1).count() as u32,
             face_count: occluders.faces.len() as u32,
@@ -141,6 +162,17 @@ impl OccluderContents {
 
     /// All contents, for an engine to upload by key.
     pub fn contents(&self) -> impl Iterator<Item = &Content> {
-        [&self.faces, &self.face_tree, &self.edges, &self.incident_faces].into_iter()
+        [&self.faces, &self.face_corners, &self.face_tree, &self.edges, &self.incident_faces]
+            .into_iter()
+            .chain(self.touching.as_ref().map(|touching| &touching.corners))
     }
+}
+
+/// Where a face's sides begin.
+fn corners(face: &Face, edges: &[OccluderEdge]) -> [[f32; 3]; 4] {
+    let start = |side: u32| {
+        let edge = &edges[(side >> 1) as usize];
+        if side & 1 == 0 { edge.low } else { edge.high }
+    };
+    face.sides.map(|side| start(if side == NO_SIDE { face.sides[0] } else { side }))
 }
