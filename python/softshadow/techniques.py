@@ -98,8 +98,9 @@ class DepthComplexity(Technique):
     """Silhouette edges and counters (Forest, Barthe and Paulin 2008): as accurate as rays to the same samples.
 
     Where a single layer hides the light, its visible area answers exactly, without sampling noise; not for spheres,
-    suns wider than half a degree, polygons of more than 64 corners, nor in a call with a textured light. Not for
-    foliage: a scene in which too many edges lie before one receiver raises an error that says so.
+    suns wider than half a degree, polygons of more than 64 corners, nor in a call with a textured light. Foliage is
+    folded triangle by triangle: the same samples, and no areas. A scene in which too much lies before one receiver
+    raises an error that says so.
 
     Parameters
     ----------
@@ -112,7 +113,10 @@ class DepthComplexity(Technique):
     passes : int
         Sets of samples that are averaged, each with a seed of its own.
     exact_area : bool
-        Whether the light's visible area answers where the samples show a single layer.
+        Whether the light's visible area answers where the samples show a single layer. Not over triangles.
+    unit : {"auto", "edges", "triangles"}
+        What is folded: silhouette edges, or triangles one by one. "auto" takes triangles where a scene is a soup of
+        them; the result's ``info["occluder_units"]`` says which, for each light.
 
     Raises
     ------
@@ -126,6 +130,7 @@ class DepthComplexity(Technique):
     seed: int = _DEPTH_COMPLEXITY["seed"]
     passes: int = _DEPTH_COMPLEXITY["passes"]
     exact_area: bool = _DEPTH_COMPLEXITY["exact_area"]
+    unit: str = _DEPTH_COMPLEXITY["unit"]
 
 
 TECHNIQUES: dict[str, type[Technique]] = {kind.name: kind for kind in (RayTraced, HardShadowMap, DepthComplexity)}

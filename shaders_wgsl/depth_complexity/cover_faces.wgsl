@@ -125,7 +125,7 @@ fn has_any(mask: vec2<u32>) -> bool {
 }
 
 // Those samples on whose way from the reference point an edge lies.
-fn crossed(eye: Eye, image: EdgeImage, samples: vec2<u32>) -> vec2<u32> {
+fn crossed(eye: Eye, image: EdgeImage, samples: vec2<u32>, samples_move: bool) -> vec2<u32> {
     let crossing = crossing_of(image);
     var mask = vec2<u32>(0u);
     var waiting = select(vec2<u32>(0u), samples, image_matters(light_frame, image));
@@ -133,7 +133,10 @@ fn crossed(eye: Eye, image: EdgeImage, samples: vec2<u32>) -> vec2<u32> {
         let i = first_of(waiting);
         let bit = one_bit(i);
         waiting &= ~bit;
-        let s = placed_sample(light_frame, eye.view, group_samples.at[i].xy);
+        var s = group_samples.at[i].xy;
+        if (samples_move) {
+            s = placed_sample(light_frame, eye.view, s);
+        }
         mask |= select(vec2<u32>(0u), bit, crosses(crossing, s));
     }
     return mask;
@@ -149,12 +152,11 @@ fn has_steps_left() -> bool {
     return steps == LAST_STEPS;
 }
 
-@compute @workgroup_size(64)
-fn cover_faces(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    if (invocation.x >= slice.count) {
+fn cover_samples(invocation: u32, samples_move: bool) {
+    if (invocation >= slice.count) {
         return;
     }
-    let item = slice.first + invocation.x;
+    let item = slice.first + invocation;
     let groups = (cover_settings.receiver_count + 63u) / 64u;
     let at = scattered(item / 64u, groups) * 64u + item % 64u;
     if (at >= cover_settings.receiver_count) {
@@ -210,7 +212,7 @@ fn cover_faces(@builtin(global_invocation_id) invocation: vec3<u32>) {
                     if (exists) {
                         border = with_image(border, image, is_forward);
                     }
-                    mask ^= crossed(eye, before_limit(eye.view, edge, image), select(vec2<u32>(0u), near, exists));
+                    mask ^= crossed(eye, before_limit(eye.view, edge, image), select(vec2<u32>(0u), near, exists), samples_move);
                     corners = Corners(corners.b, corners.c, corners.d, corners.a);
                 }
                 let covers = (cover(eye.view, face, border) & 1) != 0;
@@ -228,4 +230,15 @@ fn cover_faces(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if (!has_steps_left() || (!is_done && cover_settings.round + 1u == cover_settings.rounds)) {
         atomicAdd(&counts.unfinished, 1u);
     }
+}
+
+@compute @workgroup_size(64)
+fn cover_faces(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    cover_samples(invocation.x, false);
+}
+
+// A sphere's samples move with the receiver.
+@compute @workgroup_size(64)
+fn cover_moving(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    cover_samples(invocation.x, true);
 }

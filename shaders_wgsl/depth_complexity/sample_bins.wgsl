@@ -1,12 +1,12 @@
-// Which samples lie in a part of the light: for either axis, the samples before each of 64 strips, one bit a sample.
+// Which samples lie in a part of the light: for either axis, the samples before each of 63 strips, one bit a sample.
 //#import depth_complexity/frame.wgsl
 
-const BINS: u32 = 64u;
+const BINS: u32 = 63u;
 
 struct SampleBins {
     low: vec2<f32>,      // of the samples
     scale: vec2<f32>,    // strips in one unit
-    before: array<vec4<u32>, 65>,  // samples before strip i along x, and along y; the last row are all
+    before: array<vec4<u32>, 64>,  // samples before strip i along x, and along y; the last row are all
 }
 
 // What bounds images on the light, as far as rounding lets them be trusted.

@@ -135,6 +135,8 @@ NONSENSE = [
     (lambda: ss.DepthComplexity(samples=257), ss.SettingsError, "256"),
     (lambda: ss.DepthComplexity(passes=0), ss.SettingsError, "passes"),
     (lambda: ss.DepthComplexity(exact_area=1), ss.SettingsError, "exact_area.*True or False"),
+    (lambda: ss.DepthComplexity(unit="leaves"), ss.SettingsError, "auto.*edges.*triangles"),
+    (lambda: ss.DepthComplexity(unit=None), ss.SettingsError, "unit"),
     (lambda: ss.HardShadowMap(resolution=0), ss.SettingsError, "resolution"),
     (lambda: ss.HardShadowMap(resolution=2**31), ss.SettingsError, "resolution"),
     # calls

@@ -117,6 +117,7 @@ def test_several_lights_are_added_in_a_picture(tmp_path, mesh_file):
         (["render", "hall", "-o", "a.png", "--technique", "ray-traced:samples=0"], "32768"),
         (["render", "hall", "-o", "a.png", "--technique", "ray-traced:samples=x"], "whole number"),
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:exact_area=maybe"], "true or false"),
+        (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:unit=leaves"], "triangles"),
         (["render", "hall", "-o", "a.png", "--device", "toaster"], "toaster"),
         ([], "required"),
     ],

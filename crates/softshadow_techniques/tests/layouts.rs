@@ -11,7 +11,9 @@ use std::path::Path;
 use softshadow_scene::occluders::NO_SIDE;
 use softshadow_scene::{BvhNode, Corner, LocalPoint};
 use softshadow_shaders::{EMBEDDED, module};
-use softshadow_techniques::depth_complexity::{ClusterRange, FoldSettings, FrameRecord};
+use softshadow_techniques::depth_complexity::{
+    ClusterRange, CoverSettings, FoldSettings, FrameRecord, SampleBins, TouchingRange,
+};
 use softshadow_techniques::hard_shadow_map::{ShadowView, ShadowViews};
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
 use softshadow_techniques::parts::occluder_buffers::{EdgeRecord, FaceRecord, IncidentFace};
@@ -29,7 +31,7 @@ struct Layout {
 /// A Rust struct: its name, its bytes by the compiler, the WGSL file and the struct there.
 type Pair = (&'static str, usize, &'static str, &'static str);
 
-const PAIRS: [Pair; 22] = [
+const PAIRS: [Pair; 25] = [
     ("Receiver", size_of::<Receiver>(), "shared/receiver.wgsl", "Receiver"),
     ("CameraClip", size_of::<CameraClip>(), "receivers/draw_triangle_ids.wgsl", "CameraClip"),
     ("CameraRays", size_of::<CameraRays>(), "receivers/place_on_triangles.wgsl", "CameraRays"),
@@ -51,6 +53,9 @@ const PAIRS: [Pair; 22] = [
     ("BvhNode", size_of::<BvhNode>(), "depth_complexity/tree.wgsl", "TreeNode"),
     ("FrameRecord", size_of::<FrameRecord>(), "depth_complexity/frame.wgsl", "LightFrame"),
     ("ClusterRange", size_of::<ClusterRange>(), "depth_complexity/clusters.wgsl", "ClusterRange"),
+    ("CoverSettings", size_of::<CoverSettings>(), "depth_complexity/cover_faces.wgsl", "CoverSettings"),
+    ("SampleBins", size_of::<SampleBins>(), "depth_complexity/sample_bins.wgsl", "SampleBins"),
+    ("TouchingRange", size_of::<TouchingRange>(), "depth_complexity/touching.wgsl", "TouchingRange"),
     ("FoldSettings", size_of::<FoldSettings>(), "depth_complexity/fold.wgsl", "FoldSettings"),
 ];
 
@@ -96,6 +101,7 @@ fn layout(body: &str) -> Layout {
             "[f32; 2]" => 8,
             "[f32; 3]" => 12,
             "[u32; 4]" => 16,
+            "[[u32; 4]; 64]" => 64 * 16,
             "[ShadowView; 6]" => 6 * size_of::<ShadowView>() as u32,
             other => panic!("teach this test the size of '{other}'"),
         };
@@ -173,7 +179,7 @@ fn shader(file: &str) -> &'static str {
 }
 
 /// Constants of `depth_complexity`, each with what the kernels make of it.
-fn counted_by_kernels() -> [(&'static str, u64); 13] {
+fn counted_by_kernels() -> [(&'static str, u64); 15] {
     let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/{file}.wgsl"), name).bytes);
     let value = |file: &str, name| constant(shader(&format!("depth_complexity/{file}.wgsl")), name).unwrap();
     [
@@ -190,6 +196,8 @@ fn counted_by_kernels() -> [(&'static str, u64); 13] {
         ("HEAD_BYTES", 4 * value("tiles", "HEAD")),
         ("BUNDLES", value("tiles", "BUNDLES")),
         ("STRIDES", value("walk", "STRIDES")),
+        ("BINS", value("sample_bins", "BINS")),
+        ("ROUND_STEPS", value("cover_faces", "ROUND_STEPS")),
     ]
 }
 
@@ -205,7 +213,8 @@ fn source(path: &str) -> String {
 
 #[test]
 fn what_depth_complexity_counts_is_what_its_kernels_count() {
-    let text = ["mod", "tiled", "values"].map(|name| source(&format!("src/depth_complexity/{name}.rs"))).concat();
+    let text =
+        ["covered", "mod", "tiled", "values"].map(|name| source(&format!("src/depth_complexity/{name}.rs"))).concat();
     assert_eq!(contradicted(&text), Vec::<&str>::new());
     // Any of them one off, or gone, is named.
     for (name, value) in counted_by_kernels() {
@@ -252,10 +261,11 @@ fn faces_and_leaves_are_packed_alike() {
 #[test]
 fn structs_of_depth_complexity_are_the_same_in_every_kernel() {
     let kernels =
-        ["silhouettes", "bound_clusters", "reference_depth", "bound_tiles", "cull", "size_fold", "fold"].map(|name| {
-            let file = format!("depth_complexity/{name}.wgsl");
-            module(&file).unwrap()
-        });
+        ["silhouettes", "bound_clusters", "reference_depth", "bound_tiles", "cull", "cover_faces", "size_fold", "fold"]
+            .map(|name| {
+                let file = format!("depth_complexity/{name}.wgsl");
+                module(&file).unwrap()
+            });
     let homes = [
         ("frame", &["LightFrame", "FrameSamples"][..]),
         ("occluders", &["Face", "OccluderEdge", "IncidentFace"]),

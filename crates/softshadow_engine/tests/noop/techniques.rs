@@ -6,6 +6,7 @@ use std::sync::Arc;
 use softshadow_engine::{Engine, RunReport, StageReport, Timing};
 use softshadow_plan::{Content, ContentKey};
 use softshadow_scene::{Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, Scene, look_at};
+use softshadow_techniques::depth_complexity::OccluderUnit;
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
     DepthComplexity, HardShadowMap, OccluderContents, RayTraced, ReceiverSource, SceneContents, Shading, Technique,
@@ -31,6 +32,8 @@ fn lights() -> Vec<Light> {
     vec![
         light(rectangle.clone(), 5.0).unwrap(),
         light(LightShape::Sphere { radius: 0.2 }, 0.25).unwrap(),
+        // The upper sheet touches this one.
+        light(LightShape::Sphere { radius: 0.3 }, 0.5).unwrap(),
         light(LightShape::Sun { angular_diameter: 0.01 }, 5.0).unwrap(),
         light(rectangle, 5.0).unwrap().with_texture(texture).unwrap(),
     ]
@@ -44,6 +47,11 @@ fn techniques() -> Vec<Technique> {
     let folded =
         |samples, passes| Technique::DepthComplexity(DepthComplexity { samples, passes, ..DepthComplexity::default() });
     all.extend([folded(64, 1), folded(33, 2), folded(256, 1)]);
+    let covered = |samples, passes| {
+        let unit = OccluderUnit::Triangles;
+        Technique::DepthComplexity(DepthComplexity { samples, passes, unit, ..DepthComplexity::default() })
+    };
+    all.extend([covered(33, 2), covered(256, 1)]);
     all
 }
 
@@ -106,7 +114,7 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
             }
         }
     }
-    assert_eq!(runs, 8 * 2 * 2 * 3 * 2);
+    assert_eq!(runs, 10 * 2 * 2 * 3 * 2);
 }
 
 /// Outputs of every stage against what is asked for: values with a light's last pass, receivers and pictures once a block.

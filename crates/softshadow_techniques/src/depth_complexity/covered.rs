@@ -1,6 +1,7 @@
 //! The passes of the triangle-wise path: no tiles, no lists, no counters.
 
 use softshadow_plan::{Kernel, Over, Plan, Values};
+use softshadow_scene::LightShape;
 
 use super::tiled::{COUNT_BYTES, LIST_COUNTS, scattered};
 use super::values::GROUP;
@@ -9,9 +10,10 @@ use crate::parts::occluder_buffers::OccluderContents;
 use crate::request::Request;
 
 const COVER_FACES: Kernel = Kernel { file: "depth_complexity/cover_faces.wgsl", entry: "cover_faces" };
+const COVER_MOVING: Kernel = Kernel { file: "depth_complexity/cover_faces.wgsl", entry: "cover_moving" };
 
 /// Strips into which either axis of the light is cut.
-const BINS: usize = 64;
+const BINS: usize = 63;
 /// Steps of one round.
 const ROUND_STEPS: u64 = 7000;
 /// Steps that a face takes at most: its own, its leaf's, and four sides of 64 samples each.
@@ -35,7 +37,7 @@ pub struct CoverSettings {
 pub struct SampleBins {
     low: [f32; 2],
     scale: [f32; 2],
-    before: [[u32; 4]; 65],
+    before: [[u32; 4]; 64],
 }
 
 impl SampleBins {
@@ -78,6 +80,7 @@ pub(super) fn append_covers(
     let face_corners = plan.uploaded("corners of faces", &occluders.face_corners);
     let counts = plan.buffer("running counts", COUNT_BYTES);
     plan.clear("no counts", "nothing is counted yet", counts);
+    let kernel = if matches!(request.light.shape(), LightShape::Sphere { .. }) { COVER_MOVING } else { COVER_FACES };
     for group in 0..settings.samples.div_ceil(GROUP) {
         let group_samples = plan.parameter(format!("group samples {group}"), u64::from(GROUP) * 16);
         let bins = plan.parameter(format!("sample bins {group}"), size_of::<SampleBins>() as u64);
@@ -89,7 +92,7 @@ pub(super) fn append_covers(
                 _ => "goes on where a driver would have ended the loop",
             };
             let over = Over::Items { count: scattered(request.block.count as u32), work_per_item: 64 };
-            plan.compute(format!("cover triangles {group}.{round}"), why, COVER_FACES, over)
+            plan.compute(format!("cover triangles {group}.{round}"), why, kernel, over)
                 .bind("light_frame", reads.frame)
                 .bind("group_samples", group_samples)
                 .bind("sample_bins", bins)

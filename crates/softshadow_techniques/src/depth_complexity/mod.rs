@@ -11,12 +11,23 @@
 //! silhouettes in the shaft between it and the light. And where the counters show a single depth, the *area* beyond the edges answers,
 //! without sampling noise.
 //!
-//! **Parameters.** `samples` a pass, up to 256; `pattern`, `seed`, `passes` as for `ray_traced`; `exact_area`.
+//! **Soups.** Foliage has no surface to take silhouettes of: every leaf's border is an edge from everywhere. There the same predicates
+//! answer triangle by triangle: a receiver walks the hierarchy over the triangles once for 64 samples, passes by what no visible sample
+//! lies behind, and takes away the samples that a triangle hides: those inside its border, by the reference point and the edges that
+//! are crossed on the way from it. The masks are those of edges, bit for bit where both were compared; there are no lists and no areas.
+//!
+//! **Parameters.** `samples` a pass, up to 256; `pattern`, `seed`, `passes` as for `ray_traced`; `exact_area`; `unit`: `edges`,
+//! `triangles`, or `auto`, which takes triangles for a light with more borders before it than faces and than a list has room for.
 //!
 //! **When it is wrong.** Areas are wrong where layers overlap between the samples (the first 64 of them say whether; at most by the
 //! sampler's own error). They answer for rectangles, discs, polygons of up to 64 corners and suns up to half a degree; not for spheres and
-//! wider suns, whose measure is solid angle, and for no light of a call in which any has a texture. Samples are off as for `ray_traced`. Foliage has no surface to take silhouettes of: every leaf's border is an edge, lists grow long, and the call ends
-//! with an error that names `ray_traced`. Triangles that touch a sphere light are refused.
+//! wider suns, whose measure is solid angle, for no light of a call in which any has a texture, and not over triangles. Samples are off as
+//! for `ray_traced`. Where too many edges lie before one receiver, or a walk over triangles takes too many steps for a software driver, the
+//! call ends with an error that names the way out. On a canopy of 20,000 leaves triangles cost what `ray_traced` costs, and not less: 1.01
+//! times its CPU time for 16 samples at 512 × 512 on Mesa's software driver, 1.13 for 64, 1.7 for 256, at the same error. Edges cannot
+//! run there.
+//!
+//! Triangles that touch a sphere light are tried against every sample as rays would, after either unit.
 
 mod covered;
 mod order;

@@ -8,3 +8,4 @@ mod limits;
 mod program;
 mod requests;
 mod snapshots;
+mod soups;
