@@ -28,7 +28,7 @@ fn differences(a: &Visibility, b: &Visibility, samples: u32) -> (u32, u32) {
 fn triangles_and_edges_have_the_same_bits_on_shipped_scenes() {
     for name in ["fork", "cards", "toruses", "hall"] {
         let (scene, light, camera) = shipped(name, [160, 120]);
-        let run = |technique| see(&scene, std::slice::from_ref(&light), &Receivers::Camera(camera.clone()), &technique);
+        let run = |technique| see(&scene, std::slice::from_ref(&light), &Receivers::Camera(camera), &technique);
         let (edges, triangles) = (run(unit(64, OccluderUnit::Edges)), run(unit(64, OccluderUnit::Triangles)));
         let (differ, hidden) = differences(&edges, &triangles, 64);
         let from_rays = differences(&run(ray_traced(64)), &triangles, 64).0;
