@@ -67,16 +67,16 @@ fn eye_of(receiver: Receiver) -> Eye {
 
 // The samples that can lie within bounds.
 fn samples_within(eye: Eye, bounds: ImageBounds) -> vec2<u32> {
-    let low = bounds.low + eye.offset;
-    let high = bounds.high + eye.offset;
+    // Far beyond every sample, and far from where products of them would have no value.
+    let low = max(bounds.low, vec2<f32>(-1e18)) + eye.offset;
+    let high = min(bounds.high, vec2<f32>(1e18)) + eye.offset;
     let from_ = min(low, low * eye.widest) - sample_bins.low;
     let to = max(high, high * eye.widest) - sample_bins.low;
     let x = strips(from_.x, to.x, sample_bins.scale.x);
     let y = strips(from_.y, to.y, sample_bins.scale.y);
     let found = (sample_bins.before[x.y].xy & ~sample_bins.before[x.x].xy)
         & (sample_bins.before[y.y].zw & ~sample_bins.before[y.x].zw);
-    let everywhere = select(vec2<u32>(0xffffffffu), found, bounds.is_ahead);
-    return select(everywhere, vec2<u32>(0u), bounds.beyond);
+    return select(found, vec2<u32>(0u), bounds.beyond);
 }
 
 // The samples that can lie behind a box.

@@ -9,11 +9,11 @@ struct SampleBins {
     before: array<vec4<u32>, 64>,  // samples before strip i along x, and along y; the last row are all
 }
 
-// What bounds images on the light, as far as rounding lets them be trusted.
+// What bounds images on the light, as far as rounding lets them be trusted. What lies beside or behind the receiver has an image that
+// runs out to infinity: there the guarded denominators widen the bounds beyond every sample.
 struct ImageBounds {
     low: vec2<f32>,
     high: vec2<f32>,
-    is_ahead: bool,      // else some of it lies beside or behind the receiver, and its image runs out to infinity
     beyond: bool,        // all of it lies behind the receiver, or to one side of the light
 }
 
@@ -32,7 +32,7 @@ fn bounds_of_box(frame: LightFrame, view: FrameView, middle: vec3<f32>, half: ve
     let left = frame.low.x * at.z - at.x > dot(abs(view.x_row - view.z_row * frame.low.x), half) + slack.x + abs(frame.low.x) * slack.z;
     let over = at.y - frame.high.y * at.z > dot(abs(view.y_row - view.z_row * frame.high.y), half) + slack.y + abs(frame.high.y) * slack.z;
     let under = frame.low.y * at.z - at.y > dot(abs(view.y_row - view.z_row * frame.low.y), half) + slack.y + abs(frame.low.y) * slack.z;
-    return ImageBounds(q - reach, q + reach, nearest > 0.0, right || left || over || under || at.z + depth <= 0.0);
+    return ImageBounds(q - reach, q + reach, right || left || over || under || at.z + depth <= 0.0);
 }
 
 // Four corners.
@@ -50,7 +50,7 @@ fn bounds_of_corners(frame: LightFrame, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>
     let over = least(y - frame.high.y * z) > slack.y + abs(frame.high.y) * slack.z;
     let under = least(frame.low.y * z - y) > slack.y + abs(frame.low.y) * slack.z;
     let is_behind = -least(-z) + slack.z <= 0.0;
-    return ImageBounds(low - pad, high + pad, nearest > 0.0, right || left || over || under || is_behind);
+    return ImageBounds(low - pad, high + pad, right || left || over || under || is_behind);
 }
 
 fn least(v: vec4<f32>) -> f32 {
