@@ -31,7 +31,7 @@ lights       rect:width=1,height=1,position=1.5/3.5/1,target=0/0.3/0   disc:radi
 cameras      eye=2/2/3,target=0/0.4/0,fov=40,up=0/1/0
 techniques   ray-traced:samples=64,seed=1      hard-shadow-map:resolution=2048
              depth-complexity:samples=64,exact_area=true,spread=interleaved,tile=4
-             depth-complexity:evaluation=blended,counters=words
+             depth-complexity:evaluation=blended,counters=words   depth-complexity:unit=auto
 """
 
 

@@ -110,8 +110,9 @@ class DepthComplexity(Technique):
     """Silhouette edges and counters (Forest, Barthe and Paulin 2008): as accurate as rays to the same samples.
 
     Where a single layer hides the light, its visible area answers exactly, without sampling noise; not for spheres,
-    suns wider than half a degree, polygons of more than 64 corners, nor in a call with a textured light. Not for
-    foliage: a scene in which too many edges lie before one receiver raises an error that says so.
+    suns wider than half a degree, polygons of more than 64 corners, nor in a call with a textured light. Foliage is
+    folded triangle by triangle: the same samples, and no areas. A scene in which too much lies before one receiver
+    raises an error that says so.
 
     Parameters
     ----------
@@ -126,7 +127,7 @@ class DepthComplexity(Technique):
     exact_area : bool
         Whether the light's visible area answers where the samples show a single layer; never where something
         semi-opaque hides the light. With evaluation "blended" samples alone answer, and the result's `info["notes"]`
-        say so.
+        say so. Not over triangles.
     silhouettes : {"accurate", "standard"}
         Which edges count: all that are silhouettes for any part of the light, as rays see them, or those of one point near
         its middle: fewer, and wrong next to round bodies.
@@ -151,6 +152,9 @@ class DepthComplexity(Technique):
         Blended only: the smallest base of a counter's digit. Larger ones are taken where counts ask for them.
     batches : {1, 2}
         Blended only: whether changes are counted as they come, or all that add before all that take away.
+    unit : {"auto", "edges", "triangles"}
+        What is folded: silhouette edges, or triangles one by one. "auto" takes triangles where a scene is a soup of
+        them; the result's ``info["occluder_units"]`` says which, for each light.
 
     Raises
     ------
@@ -174,6 +178,7 @@ class DepthComplexity(Technique):
     counters: str = _DEPTH_COMPLEXITY["counters"]
     base: int = _DEPTH_COMPLEXITY["base"]
     batches: int = _DEPTH_COMPLEXITY["batches"]
+    unit: str = _DEPTH_COMPLEXITY["unit"]
 
 
 TECHNIQUES: dict[str, type[Technique]] = {kind.name: kind for kind in (RayTraced, HardShadowMap, DepthComplexity)}

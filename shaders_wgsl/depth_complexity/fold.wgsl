@@ -666,7 +666,7 @@ fn fold_attenuated(
             let sign = select(1, -1, image.left);
             fold.sums = with_layers(fold.sums, weight.opaque * sign, mask);
             sums = attenuated_by(sums, weight.attenuation * sign, face_count(edge), mask);
-            fold.steps += 4u + face_count(edge);
+            fold.steps += 4u + face_count(edge) + MOST_TESTS;
         }
         fold.chunk = lists[at];
     }

@@ -5,7 +5,7 @@
 // are, until a fold of edges says otherwise.
 //#import shared/slice.wgsl
 //#import shared/receiver.wgsl
-//#import depth_complexity/edge.wgsl
+//#import depth_complexity/cover.wgsl
 //#import depth_complexity/clusters.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/walk.wgsl
@@ -27,66 +27,15 @@
 // Rounding, with room to spare.
 const SLACK: f32 = 4e-6;
 
-// Two directions with a smaller sine between them are one, or opposite.
-const NO_TURN: f32 = 1e-6;
-
-// How often a face covers the reference point: its side times how often the loop of its edges' images turns around that point. The twin
-// of `Loop` in `depth_of_reference.rs`.
-fn cover(view: FrameView, face: Face) -> i32 {
-    var has_left = false;
-    var has_right = false;
-    var has_wide = false;
-    var leaves = false;
-    var returns = false;
-    var outward = vec2<f32>(0.0);
-    var homeward = vec2<f32>(0.0);
+fn cover_of(view: FrameView, face: Face) -> i32 {
+    var border = no_loop();
     for (var k = 0u; k < 4u; k++) {
         let reference = face.sides[k];
         if (reference != NO_SIDE) {
-            let image = edge_image(view, edge_of(edges[reference >> 1u]));
-            let low_is_ahead = image.low.z > 0.0;
-            let high_is_ahead = image.high.z > 0.0;
-            if (low_is_ahead || high_is_ahead) {
-                let is_forward = (reference & 1u) == 0u;
-                let low = low_direction(image);
-                let high = high_direction(image);
-                let is_left = image.left == is_forward;
-                has_left = has_left || is_left;
-                has_right = has_right || !is_left;
-                has_wide = has_wide || dot(low, high) < 0.0;
-                let infinite = select(low, high, low_is_ahead);
-                let goes_out = low_is_ahead == is_forward;
-                if (low_is_ahead != high_is_ahead) {
-                    outward = select(outward, infinite, goes_out);
-                    homeward = select(infinite, homeward, goes_out);
-                    leaves = leaves || goes_out;
-                    returns = returns || !goes_out;
-                }
-            }
+            border = with_image(border, edge_image(view, edge_of(edges[reference >> 1u])), (reference & 1u) == 0u);
         }
     }
-    let side = side_of_plane(face.normal, face.point, face.flatness, view.position);
-    let all_left = has_left && !has_right;
-    let all_right = has_right && !has_left;
-    let either = select(select(0, -1, all_right), 1, all_left);
-    var turns = either;
-    if (leaves && returns) {
-        let across = outward.x * homeward.y - outward.y * homeward.x;
-        let arc = select(-1, 1, across >= 0.0);
-        let if_all_arc = select(0, arc, either == arc);
-        let half_turn = select(select(side, 0, either == -side), if_all_arc, arc == side);
-        let no_length = select(0, either, has_wide);
-        let clear = abs(across) > NO_TURN * length(outward) * length(homeward);
-        turns = select(select(half_turn, no_length, dot(outward, homeward) > 0.0), if_all_arc, clear);
-    }
-    var before = true;
-    if (view.limited) {
-        // height / slope · dot(towards, way) < limit, without dividing.
-        let height = dot(face.normal, face.point - view.position);
-        let slope = dot(face.normal, view.way);
-        before = height * sign(slope) * dot(view.towards, view.way) < view.limit * abs(slope);
-    }
-    return select(0, side * turns, before);
+    return cover(view, face, border);
 }
 
 // Whether the way to the reference point leads off a face's plane, by more than rounding could turn it: then it does not meet the face.
@@ -143,7 +92,7 @@ fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
         }
         steps += 2u * end + 5u * countOneBits(waiting);
         while (waiting != 0u) {
-            depth += cover(view, face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]));
+            depth += cover_of(view, face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]));
             waiting &= waiting - 1u;
         }
         chunk = lists[here];
@@ -197,7 +146,7 @@ fn reference_depth_attenuated(@builtin(global_invocation_id) invocation: vec3<u3
         while (waiting != 0u) {
             let face = face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]);
             let units = triangle_attenuation[face.triangle];
-            let times = cover(view, face);
+            let times = cover_of(view, face);
             depth += select(0, times, units == OPAQUE);
             if (units != OPAQUE && times != 0 && most <= LARGEST_ATTENUATION) {
                 attenuation += times * i32(units);

@@ -16,7 +16,7 @@ struct TilePart {
 // A receiver in the order of the tiles.
 struct Slot {
     receiver: u32,
-    part: u32,        // of its tile
+    part: u32,        // of its tile; where faces are walked instead, the node at which the walk goes on
     depth: i32,       // of the reference point, or NO_VIEW
     attenuation: i32, // of the reference point, in units
 }

@@ -168,6 +168,8 @@ NONSENSE = [
     (lambda: blended(base=10), ss.SettingsError, "base.*8, 16, 64 or 256"),
     (lambda: blended(batches=3), ss.SettingsError, "batches.*1 or 2"),
     (lambda: visibility(SCENE, LIGHT, points=CARD, technique=blended()), ss.SettingsError, "knows no points.*'tiled'"),
+    (lambda: ss.DepthComplexity(unit="leaves"), ss.SettingsError, "auto.*edges.*triangles"),
+    (lambda: ss.DepthComplexity(unit=None), ss.SettingsError, "unit"),
     (lambda: ss.HardShadowMap(resolution=0), ss.SettingsError, "resolution"),
     (lambda: ss.HardShadowMap(resolution=2**31), ss.SettingsError, "resolution"),
     # calls

@@ -121,6 +121,7 @@ def test_several_lights_are_added_in_a_picture(tmp_path, mesh_file):
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:exact_area=maybe"], "true or false"),
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:base=64"], "'blended' alone"),
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:evaluation=blended,base=9"], "64 or 256"),
+        (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:unit=leaves"], "triangles"),
         (["render", "hall", "-o", "a.png", "--device", "toaster"], "toaster"),
         ([], "required"),
     ],

@@ -240,6 +240,23 @@ def test_wedges_see_the_samples_that_tiles_see(scene, settings):
     assert wedges.info["area_receivers"] == 0
     assert any("exact_area" in note for note in wedges.info["notes"])
 
+def test_triangles_see_the_samples_that_edges_see_and_info_says_which(scene):
+    light, camera = light_above(), camera_above((32, 24))
+    edges, triangles = (
+        visibility(
+            scene,
+            light,
+            camera=camera,
+            technique=ss.DepthComplexity(exact_area=False, unit=unit),
+            sample_masks=True,
+        )
+        for unit in ("edges", "triangles")
+    )
+    np.testing.assert_array_equal(edges.visible_samples, triangles.visible_samples)
+    assert (~triangles.visible_samples).sum() > 100
+    assert (edges.info["occluder_units"], triangles.info["occluder_units"]) == (["edges"], ["triangles"])
+    assert triangles.info["silhouette_edges"] == 0
+
 
 def test_light_points_of_a_sphere_fill_its_disc_as_each_receiver_sees_it(scene, floor_points):
     light = ss.SphereLight(radius=0.5, world_from_light=POSE)

@@ -27,8 +27,12 @@ pub struct Info {
     pub area_receivers: u64,
     /// Silhouette edges in the lists of all tiles, added up over lights and passes.
     pub silhouette_edges: u64,
+    /// What `depth_complexity` folded for each light: `edges`, `triangles`, or `none` where nothing can hide it.
+    pub occluder_units: Vec<&'static str>,
     /// Triangles that the planes of lights cut.
     pub cut_triangles: usize,
+    /// Triangles that touch balls of light and were tried sample by sample, added up over lights; by `depth_complexity` only.
+    pub touching_triangles: usize,
     /// Triangles that lie behind lights and were left out for them, added up over lights.
     pub triangles_behind: usize,
     /// How this call came to its scene, apart from `wall_ms`.

@@ -38,7 +38,9 @@ pub use softshadow_scene::{
     Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, STRETCH_LIMIT,
     SamplePattern, SampleSpread, Scene, SceneError, UpAxis, look_at, procedural, scene_file,
 };
-pub use softshadow_techniques::depth_complexity::{Counters, Coverage, Evaluation, InitialCounts, Silhouettes};
+pub use softshadow_techniques::depth_complexity::{
+    Counters, Coverage, Evaluation, InitialCounts, OccluderUnit, Silhouettes,
+};
 pub use softshadow_techniques::{
     Attenuation, DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError,
 };

@@ -163,6 +163,11 @@ pub(crate) fn run(
     }
     let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
     let most = receivers_per_block(technique, options, channels, picture.is_some(), &host, source.row(), &contents)?;
+    if let Technique::DepthComplexity(settings) = technique {
+        collector.result.info.occluder_units = occluders.iter().map(|o| settings.unit_used(o)).collect();
+    }
+    let touching = occluders.iter().filter_map(|o| o.touching.as_ref());
+    collector.result.info.touching_triangles = touching.map(|t| t.count as usize).sum();
     collector.result.info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
     collector.result.info.triangles_behind = occluders.iter().map(|o| o.triangles_behind).sum();
     let program = VisibilityProgram {
@@ -210,8 +215,12 @@ pub(crate) fn run(
     if collector.unfinished > 0 {
         let count = collector.unfinished;
         return Err(Error::Gpu(match technique {
+            Technique::DepthComplexity(_) if collector.result.info.occluder_units.contains(&"edges") => format!(
+                "{count} receivers have more silhouette edges before them than fit: the scene is too dense for edges; use \
+                 depth_complexity with unit triangles, or use ray_traced"
+            ),
             Technique::DepthComplexity(_) => format!(
-                "{count} receivers have more silhouette edges before them than fit: the scene is too dense for depth_complexity; \
+                "{count} receivers have more triangles before them than can be tried: the scene is too dense for depth_complexity; \
                  use ray_traced"
             ),
             _ => format!(
@@ -314,7 +323,9 @@ impl<'a> Collector<'a> {
             traced_receivers: 0,
             area_receivers: 0,
             silhouette_edges: 0,
+            occluder_units: Vec::new(),
             cut_triangles: 0,
+            touching_triangles: 0,
             triangles_behind: 0,
             preparation: Preparation::default(),
             wall_ms: 0.0,

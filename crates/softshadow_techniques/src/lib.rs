@@ -10,6 +10,8 @@ mod program;
 pub mod ray_traced;
 mod request;
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Host, Plan, Values};
 use softshadow_scene::{Light, SampleSpread, SceneError};
@@ -120,6 +122,17 @@ impl Technique {
     pub fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_scene(scene),
+            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+        }
+    }
+
+    /// Checks whether the settings can serve what hides the lights.
+    ///
+    /// # Errors
+    /// [`TechniqueError::Setting`] names the setting, and one that can.
+    pub fn check_occluders(&self, occluders: &[Arc<OccluderContents>]) -> Result<(), TechniqueError> {
+        match self {
+            Self::DepthComplexity(settings) => settings.check_occluders(occluders),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
     }

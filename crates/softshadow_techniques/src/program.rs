@@ -118,6 +118,7 @@ impl VisibilityProgram<'_> {
             let reason = format!("{} given for {} lights", self.occluders.len(), self.lights.len());
             return Err(TechniqueError::Setting { technique: self.technique.name(), setting: "occluders", reason });
         }
+        self.technique.check_occluders(self.occluders)?;
         if let ReceiverSource::Points(points) = self.receivers {
             points.check_local(&self.scene.local.frame)?;
         }

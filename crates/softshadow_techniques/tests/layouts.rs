@@ -12,7 +12,9 @@ use softshadow_scene::occluders::{NO_SIDE, OPAQUE};
 use softshadow_scene::{BvhNode, Corner, LocalPoint};
 use softshadow_shaders::{EMBEDDED, module};
 use softshadow_techniques::depth_complexity::blended::{Largest, Packing, TARGETS, WedgeView};
-use softshadow_techniques::depth_complexity::{AttenuationScale, ClusterRange, FoldSettings, FrameRecord};
+use softshadow_techniques::depth_complexity::{
+    AttenuationScale, ClusterRange, CoverSettings, FoldSettings, FrameRecord, SampleBins, TouchingRange,
+};
 use softshadow_techniques::hard_shadow_map::{ShadowView, ShadowViews};
 use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
@@ -31,7 +33,7 @@ struct Layout {
 /// A Rust struct: its name, its bytes by the compiler, the WGSL file and the struct there.
 type Pair = (&'static str, usize, &'static str, &'static str);
 
-const PAIRS: [Pair; 27] = [
+const PAIRS: [Pair; 30] = [
     ("Receiver", size_of::<Receiver>(), "shared/receiver.wgsl", "Receiver"),
     ("CameraClip", size_of::<CameraClip>(), "receivers/draw_triangle_ids.wgsl", "CameraClip"),
     ("CameraRays", size_of::<CameraRays>(), "receivers/place_on_triangles.wgsl", "CameraRays"),
@@ -55,6 +57,9 @@ const PAIRS: [Pair; 27] = [
     ("FrameRecord", size_of::<FrameRecord>(), "depth_complexity/frame.wgsl", "LightFrame"),
     ("ClusterRange", size_of::<ClusterRange>(), "depth_complexity/clusters.wgsl", "ClusterRange"),
     ("AttenuationScale", size_of::<AttenuationScale>(), "depth_complexity/spread_reference.wgsl", "AttenuationScale"),
+    ("CoverSettings", size_of::<CoverSettings>(), "depth_complexity/cover_faces.wgsl", "CoverSettings"),
+    ("SampleBins", size_of::<SampleBins>(), "depth_complexity/sample_bins.wgsl", "SampleBins"),
+    ("TouchingRange", size_of::<TouchingRange>(), "depth_complexity/touching.wgsl", "TouchingRange"),
     ("FoldSettings", size_of::<FoldSettings>(), "depth_complexity/fold.wgsl", "FoldSettings"),
     ("WedgeView", size_of::<WedgeView>(), "depth_complexity/blended/hull.wgsl", "WedgeView"),
     ("Packing", size_of::<Packing>(), "depth_complexity/blended/packing.wgsl", "Packing"),
@@ -103,6 +108,7 @@ fn layout(body: &str) -> Layout {
             "[f32; 2]" => 8,
             "[f32; 3]" => 12,
             "[u32; 4]" => 16,
+            "[[u32; 4]; 64]" => 64 * 16,
             "[ShadowView; 6]" => 6 * size_of::<ShadowView>() as u32,
             other => panic!("teach this test the size of '{other}'"),
         };
@@ -180,7 +186,7 @@ fn shader(file: &str) -> &'static str {
 }
 
 /// Constants of `depth_complexity`, each with what the kernels make of it.
-fn counted_by_kernels() -> [(&'static str, u64); 14] {
+fn counted_by_kernels() -> [(&'static str, u64); 16] {
     let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/{file}.wgsl"), name).bytes);
     let value = |file: &str, name| constant(shader(&format!("depth_complexity/{file}.wgsl")), name).unwrap();
     [
@@ -198,6 +204,8 @@ fn counted_by_kernels() -> [(&'static str, u64); 14] {
         ("HEAD_BYTES", 4 * value("tiles", "HEAD")),
         ("BUNDLES", value("tiles", "BUNDLES")),
         ("STRIDES", value("walk", "STRIDES")),
+        ("BINS", value("sample_bins", "BINS")),
+        ("ROUND_STEPS", value("cover_faces", "ROUND_STEPS")),
     ]
 }
 
@@ -213,7 +221,8 @@ fn source(path: &str) -> String {
 
 #[test]
 fn what_depth_complexity_counts_is_what_its_kernels_count() {
-    let text = ["mod", "tiled", "values"].map(|name| source(&format!("src/depth_complexity/{name}.rs"))).concat();
+    let text =
+        ["covered", "mod", "tiled", "values"].map(|name| source(&format!("src/depth_complexity/{name}.rs"))).concat();
     assert_eq!(contradicted(&text), Vec::<&str>::new());
     // Any of them one off, or gone, is named.
     for (name, value) in counted_by_kernels() {
@@ -288,6 +297,7 @@ fn structs_of_depth_complexity_are_the_same_in_every_kernel() {
         "spread_reference",
         "bound_tiles",
         "cull",
+        "cover_faces",
         "size_fold",
         "fold",
     ]

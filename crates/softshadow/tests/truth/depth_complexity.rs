@@ -1,15 +1,15 @@
 //! Silhouette edges on the device against shadow rays on the device: the same samples, the same bits; and areas against closed forms.
 
 use softshadow::{
-    Camera, Coverage, DepthComplexity, Error, Light, LightShape, LightTexture, Options, Receivers, Scene, Silhouettes,
-    Technique, Visibility, look_at, measure, procedural, visibility,
+    Coverage, DepthComplexity, Light, LightShape, LightTexture, OccluderUnit, Options, Receivers, Scene, Silhouettes,
+    Technique, Visibility, look_at, measure, visibility,
 };
 
 use crate::common::{Random, context, lamp, points, ray_traced, rectangle, see, shipped, surface_points};
 use crate::shapes::{Point, Triangle, plate, quad, scene, sphere, torus};
 
 fn folded(samples: u32) -> DepthComplexity {
-    DepthComplexity { samples, exact_area: false, ..DepthComplexity::default() }
+    DepthComplexity { samples, exact_area: false, unit: OccluderUnit::Edges, ..DepthComplexity::default() }
 }
 
 /// Samples in which edges and rays differ, and samples that are hidden.
@@ -224,31 +224,6 @@ fn textured_lights_and_progressive_passes_average_samples() {
     let four = passes(Technique::DepthComplexity(DepthComplexity { passes: 4, ..folded(64) }));
     let rays = passes(Technique::RayTraced(softshadow::RayTraced { passes: 4, ..Default::default() }));
     assert_eq!((four.values, four.standard_error), (rays.values, rays.standard_error));
-}
-
-#[test]
-fn foliage_and_triangles_in_a_lamp_are_refused_with_the_way_out() {
-    let run = |scene: &Scene, light: &Light, receivers: &Receivers| {
-        let technique = Technique::DepthComplexity(DepthComplexity::default());
-        visibility(
-            context(),
-            scene,
-            std::slice::from_ref(light),
-            receivers,
-            &technique,
-            &Options::default(),
-            &mut |_, _| true,
-        )
-    };
-    let described = procedural::shipped("canopy").unwrap();
-    let canopy = described.build().unwrap();
-    let light = Light::new(rectangle(2.0, 2.0), look_at([0.0, 5.0, 0.0], [0.0; 3], None).unwrap()).unwrap();
-    let camera = Camera::look_at([2.6, 2.4, 3.6], [0.0, 0.85, 0.0], None, 40.0, [64, 64]).unwrap();
-    let refused = run(&canopy, &light, &Receivers::Camera(camera)).unwrap_err();
-    assert!(matches!(&refused, Error::Gpu(words) if words.contains("use ray_traced")), "{refused}");
-    let lamp = lamp(LightShape::Sphere { radius: 0.4 }, [0.0, 0.0, 0.6]);
-    let refused = run(&bodies(), &lamp, &points(vec![[0.0, 0.0, -1.0]])).unwrap_err().to_string();
-    assert!(refused.contains("triangles touch it") && refused.contains("trace rays"), "{refused}");
 }
 
 #[test]

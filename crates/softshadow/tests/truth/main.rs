@@ -29,6 +29,7 @@ mod samples;
 mod semi_opaque;
 mod semi_opaque_samples;
 mod shapes;
+mod soups;
 mod sphere_lights;
 mod spreads;
 mod sub_scenes;

@@ -18,10 +18,17 @@
 //! counters. Units are integers and nothing saturates, so what an edge adds another takes away; where more of them come together than sums
 //! hold (2^27, 8,000 sheets of opacity 0.94), the call ends with an error. Scenes without such triangles carry nothing of this.
 //!
+//! **Soups.** Foliage has no surface to take silhouettes of: every leaf's border is an edge from everywhere. There the same predicates
+//! answer triangle by triangle: a receiver walks the hierarchy over the triangles once for 64 samples, passes by what no visible sample
+//! lies behind, and takes away the samples that a triangle hides: those inside its border, by the reference point and the edges that
+//! are crossed on the way from it. The masks are those of edges, bit for bit where both were compared; there are no lists and no areas.
+//!
 //! **Parameters.** `samples` a pass, up to 256; `pattern`, `seed`, `passes`, `spread`, `tile` as for `ray_traced`, with the same sets for
 //! the same receivers, but interleaved sets of at most 8,192 samples together; `exact_area` and `spread`, tiled only; `silhouettes`, all of
 //! the light's (`accurate`) or those of one point (`standard`); `coverage`, `exact` or as published by `table`, for samples that stand
-//! still; `attenuation`: `logarithmic`, or `sum`, the paper's own, which adds opacities up to all of the light; `evaluation`.
+//! still; `attenuation`: `logarithmic`, or `sum`, the paper's own, which adds opacities up to all of the light; `unit`: `edges`,
+//! `triangles`, or `auto`, which takes triangles for a light with more borders before it than faces and than a list has room for, where
+//! spread is `correlated` and everything opaque; `evaluation`.
 //! Blended only: `initial_counts`, `rays` or the paper's `z_fail`; `counters`, `words` by atomics or the paper's `float` targets; `base`,
 //! the smallest base of a digit; `batches`, 1 or the paper's 2, outer wedges before inner ones. A first draw bounds every receiver's
 //! counters, and digits are as wide as the bounds demand: nothing overflows. One batch is the default: where digits are chosen by the
@@ -31,9 +38,11 @@
 //! **When it is wrong.** Areas are wrong where layers overlap between the samples (the first 64 of them say whether; at most by the
 //! sampler's own error). They answer for rectangles, discs, polygons of up to 64 corners and suns up to half a degree; not for spheres and
 //! wider suns, whose measure is solid angle, not where any face before a light is semi-opaque, and for no light of a call in which any has a
-//! texture. Samples are off as for `ray_traced`, and averages of interleaved ones leave what areas answered alone. Foliage has no surface to
-//! take silhouettes of: every leaf's border is an edge, lists grow long, and the call ends with an error that names `ray_traced`. Triangles
-//! that touch a sphere light are refused. `attenuation: sum` is right for one sheet alone: two of opacity 0.5 hide everything, where a
+//! texture. Samples are off as for `ray_traced`, and averages of interleaved ones leave what areas answered alone. Where too many
+//! edges lie before one receiver, or a walk over triangles takes too many steps for a software driver, the call ends with an error that names
+//! the way out. On a canopy of 20,000 leaves triangles cost what `ray_traced` costs, and not less: 1.01 times its CPU time for 16 samples at
+//! 512 × 512 on Mesa's software driver, 1.13 for 64, 1.7 for 256, at the same error. Edges cannot run there. Triangles that touch a sphere
+//! light are tried against every sample as rays would; refused where anything is semi-opaque, or blended. `attenuation: sum` is right for one sheet alone: two of opacity 0.5 hide everything, where a
 //! quarter passes, and a closed body is two sheets.
 //! `table` puts samples within a cell of an edge on either side of it: some in a thousand.
 //! `standard` silhouettes are for comparison: a round body's penumbra is too narrow, and counts do not close.
@@ -43,9 +52,12 @@
 
 pub mod blended;
 mod coverage_table;
+mod covered;
 mod order;
 mod settings;
 mod tiled;
+mod touching;
+mod unit;
 mod values;
 
 use softshadow_plan::{Kernel, Origin, Over, Pass, Plan, ResourceId, Shape};
@@ -54,9 +66,13 @@ use crate::parts::opacity;
 use crate::parts::resolve::{BLOCKED, Masks};
 use crate::parts::{light_buffers, receivers, resolve};
 use crate::request::{ReceiverSource, Request};
+pub use covered::{CoverSettings, SampleBins};
 pub use settings::{Attenuation, Counters, Coverage, DepthComplexity, Evaluation, InitialCounts, Silhouettes};
 pub use tiled::LIST_COUNTS;
 use tiled::{SLOT_BYTES, TILE, tiles};
+pub use touching::TouchingRange;
+pub use unit::OccluderUnit;
+use unit::{Unit, unit_of};
 pub(crate) use values::values;
 pub use values::{AttenuationScale, ClusterRange, FoldSettings, FrameRecord};
 use values::{MOST_SAMPLES, SET_SAMPLES, is_attenuated, shares_samples};
@@ -87,8 +103,14 @@ pub(crate) fn plan(request: &Request<'_>, settings: &DepthComplexity) -> Plan {
         triangles: plan.uploaded("triangle attenuation", settings.attenuation.of(contents)),
         samples: opacity::append(&mut plan, request, settings.samples, light.sampling, reads.blocked),
     });
-    let areas = occluders
-        .and_then(|occluders| tiled::append_fold(&mut plan, request, settings, occluders, &reads, attenuated.as_ref()));
+    let areas = occluders.and_then(|occluders| match unit_of(request, settings, occluders) {
+        Unit::Edges => tiled::append_fold(&mut plan, request, settings, occluders, &reads, attenuated.as_ref()),
+        Unit::Triangles => {
+            covered::append_covers(&mut plan, request, settings, occluders, &reads);
+            None
+        }
+    });
+    touching::append(&mut plan, request, settings, &light, receivers, reads.blocked);
 
     let decided = plan.buffer("decided samples", request.block.count as u64 * 4);
     plan.clear("all samples decided", "every mask speaks for all samples", decided);

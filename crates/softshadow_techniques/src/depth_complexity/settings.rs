@@ -1,14 +1,18 @@
 //! The settings of `depth_complexity`, and which calls they can serve.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Content, Host};
 use softshadow_scene::{Light, LightSampling, LightShape, SamplePattern, SampleSpread, pass_seed};
 
 use super::blended::{self, BASES};
 use super::tiled::{self, SLOT_BYTES};
+use super::unit::OccluderUnit;
 use super::values::{MOST_SAMPLES, SET_SAMPLES};
 use crate::TechniqueError;
 use crate::parts::interleaving::{self, NOISY_BYTES};
+use crate::parts::occluder_buffers::OccluderContents;
 use crate::parts::opacity::{self, OpacityContents};
 use crate::parts::scene_buffers::SceneContents;
 use crate::parts::{pattern_name, spread};
@@ -32,6 +36,8 @@ pub struct DepthComplexity {
     pub passes: u32,
     /// Whether the light's visible area answers where a single layer hides it; the blended evaluation knows samples alone.
     pub exact_area: bool,
+    /// What is folded: silhouette edges, or triangles.
+    pub unit: OccluderUnit,
     /// Which edges count.
     pub silhouettes: Silhouettes,
     /// How samples beyond an edge are found, where all receivers share samples that stand still.
@@ -124,6 +130,7 @@ impl Default for DepthComplexity {
             seed: 0,
             passes: 1,
             exact_area: true,
+            unit: OccluderUnit::Auto,
             silhouettes: Silhouettes::Accurate,
             coverage: Coverage::Exact,
             spread: SampleSpread::Correlated,
@@ -167,6 +174,10 @@ impl DepthComplexity {
         }
         if self.evaluation == Evaluation::Blended && self.spread != SampleSpread::Correlated {
             return fail("spread", "must be 'correlated' for evaluation 'blended'; use 'tiled'".into());
+        }
+        let has_tiles = self.evaluation == Evaluation::Tiled && self.spread == SampleSpread::Correlated;
+        if self.unit == OccluderUnit::Triangles && !has_tiles {
+            return fail("unit", "'triangles' needs evaluation 'tiled' and spread 'correlated'; use 'edges'".into());
         }
         let looks_up = self.evaluation == Evaluation::Tiled && self.spread == SampleSpread::Correlated;
         if self.coverage == Coverage::Table && !looks_up {
@@ -224,14 +235,32 @@ impl DepthComplexity {
         }
     }
 
-    /// Whether layers of this scene can be counted: blended counters hold numbers of opaque ones.
+    /// Whether layers of this scene can be counted: blended counters and masks of triangles hold opaque ones.
     pub(crate) fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
+        let fail = |setting, reason: &str| {
+            Err(TechniqueError::Setting { technique: "depth_complexity", setting, reason: reason.into() })
+        };
+        match (self.evaluation, self.unit) {
+            _ if scene.opacity.is_none() => Ok(()),
+            (Evaluation::Blended, _) => fail(
+                "evaluation",
+                "'blended' counts opaque triangles alone, and the scene has semi-opaque ones; use 'tiled'",
+            ),
+            (_, OccluderUnit::Triangles) => fail(
+                "unit",
+                "'triangles' hide what is behind them wholly, and the scene has semi-opaque ones; use 'edges'",
+            ),
+            (Evaluation::Tiled, _) => Ok(()),
+        }
+    }
+
+    /// Whether all that hides the lights can be drawn: no wedge says where the shadow of a triangle ends that touches a ball of light.
+    pub(crate) fn check_occluders(&self, occluders: &[Arc<OccluderContents>]) -> Result<(), TechniqueError> {
         match self.evaluation {
-            Evaluation::Blended if scene.opacity.is_some() => Err(TechniqueError::Setting {
+            Evaluation::Blended if occluders.iter().any(|o| o.touching.is_some()) => Err(TechniqueError::Setting {
                 technique: "depth_complexity",
                 setting: "evaluation",
-                reason: "'blended' counts opaque triangles alone, and the scene has semi-opaque ones; use 'tiled'"
-                    .into(),
+                reason: "'blended' draws edges alone, and triangles touch a sphere light; use 'tiled'".into(),
             }),
             Evaluation::Blended | Evaluation::Tiled => Ok(()),
         }

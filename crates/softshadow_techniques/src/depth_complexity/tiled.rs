@@ -64,7 +64,7 @@ pub(super) fn list_bytes_per_receiver() -> u64 {
 }
 
 /// Items of a pass that takes groups of 64 in strides.
-fn scattered(items: u32) -> u32 {
+pub(super) fn scattered(items: u32) -> u32 {
     items.div_ceil(64).next_multiple_of(STRIDES) * 64
 }
 

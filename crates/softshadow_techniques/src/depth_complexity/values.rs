@@ -7,7 +7,8 @@ use softshadow_scene::{Light, LightFrame, LightKind, LightShape, Outline, Sample
 use super::coverage_table::coverage_table;
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
-use super::{Attenuation, DepthComplexity, Evaluation, blended};
+use super::unit::{Unit, unit_of};
+use super::{Attenuation, DepthComplexity, Evaluation, blended, covered, touching};
 use crate::TechniqueError;
 use crate::parts::light_buffers::{self, Sampling};
 use crate::parts::opacity::UNITS_PER_WHOLE;
@@ -133,13 +134,21 @@ pub(crate) fn values(
             tile_count,
         };
         values.insert(format!("fold settings {group}"), bytemuck::bytes_of(&fold).to_vec());
-        if shared {
-            let first = (group * GROUP) as usize;
-            let samples = &placed[first..first + here as usize];
+        let first = (group * GROUP) as usize;
+        let samples = &placed[first..first + here as usize];
+        if settings.spread == SampleSpread::Correlated {
             values.insert(format!("group samples {group}"), padded(samples, GROUP as usize));
+        }
+        if shared {
             let table = coverage_table(samples, settings.coverage);
             values.insert(format!("coverage table {group}"), bytemuck::cast_slice(&table).to_vec());
         }
+    }
+    if let Some(occluders) = request.occluders {
+        if unit_of(request, settings, occluders) == Unit::Triangles {
+            covered::values(request, occluders, &placed, &mut values);
+        }
+        touching::values(occluders, &mut values);
     }
     if !shared {
         placed.resize(SET_SAMPLES as usize, [0.0; 2]);

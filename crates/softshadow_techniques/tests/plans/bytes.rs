@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use softshadow_plan::{Over, Work, check};
 use softshadow_scene::{LightFrame, LightShape, LocalScene, Material, Mesh, SampleSpread, Scene};
+use softshadow_techniques::depth_complexity::OccluderUnit;
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
     DepthComplexity, OccluderContents, ReceiverSource, Request, SceneContents, Shading, Technique,
@@ -16,8 +17,17 @@ fn hidden_by(request: &Request<'_>) -> [u64; 3] {
     let height = request.light.local(&request.scene.local.frame).center.z as f32;
     let has_front = matches!(request.light.shape(), LightShape::Rectangle { .. });
     let is_in_front = |triangle: &[[f32; 3]; 3]| !has_front || triangle.iter().all(|corner| corner[2] < height);
-    let faces = request.scene.local.triangles().filter(is_in_front).count() as u64;
+    let faces = request.scene.local.triangles().filter(is_in_front).count() as u64 - touching(request);
     [faces, faces / 2 * 5, faces * 3]
+}
+
+/// Triangles that touch a ball of light: sheets are level, and as near to its centre as it is large.
+fn touching(request: &Request<'_>) -> u64 {
+    let place = request.light.local(&request.scene.local.frame);
+    let LightShape::Sphere { radius } = request.light.shape() else { return 0 };
+    let touches =
+        |t: &[[f32; 3]; 3]| t.iter().all(|v| (f64::from(v[2]) - place.center.z).abs() < radius * place.length_scale);
+    request.scene.local.triangles().filter(touches).count() as u64
 }
 
 /// Whether anything semi-opaque hides the light.
@@ -155,6 +165,10 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
             add("blocked samples".into(), count * samples.div_ceil(32) * 4);
             add("decided samples".into(), count * 4);
             add("standard error".into(), count * 4 * u64::from(request.channels));
+            if touching(request) > 0 {
+                add("touching triangles".into(), touching(request) * 3 * 16);
+                add("touching range 0".into(), 16);
+            }
             if edges > 0 {
                 // A face: its plane, its triangle, how flat it is, and four sides. An edge: two ends and its faces.
                 add("faces".into(), faces * 48);
@@ -320,7 +334,10 @@ fn clusters_of_edges_are_as_many_as_edges_need() {
             occluders: Some(&occluders),
             ..fixture.request(1, fixture.points())
         };
-        let (plan, values) = stage(&Technique::DepthComplexity(DepthComplexity::default()), &request);
+        let (plan, values) = stage(
+            &Technique::DepthComplexity(DepthComplexity { unit: OccluderUnit::Edges, ..DepthComplexity::default() }),
+            &request,
+        );
         let bytes: BTreeMap<&str, u64> = plan.memory().into_iter().collect();
         let edges = 3 * u64::from(triangles);
         let labels = ["faces", "edges", "faces at edges", "clusters", "groups of clusters"];

@@ -10,4 +10,5 @@ mod program;
 mod requests;
 mod semi_opaque;
 mod snapshots;
+mod soups;
 mod spreads;

@@ -83,7 +83,9 @@ fn every_stage_has_what_hides_its_light() {
         let Step::Run(stage) = program.step(index, &[]) else { panic!("stage {index} runs") };
         let uploaded: Vec<_> = stage.plan.content_keys().collect();
         let own = &fixture.occluders[1][program.task(index).unwrap().light];
-        assert!(own.contents().all(|content| uploaded.contains(&content.key)));
+        // Corners of faces serve triangles, and here edges are folded.
+        let mut asked = own.contents().filter(|content| content.key != own.face_corners.key);
+        assert!(asked.all(|content| uploaded.contains(&content.key)));
         edges.extend(stage.plan.memory().into_iter().filter(|(label, _)| *label == "edges").map(|(_, n)| n / 32));
     }
     assert_eq!(edges, [10, 5, 10, 5]);
