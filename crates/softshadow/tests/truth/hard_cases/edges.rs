@@ -64,7 +64,7 @@ fn dc02_edges_along_the_view() {
     let light = lamp(rectangle(1.0, 1.0), [0.0, 0.0, 3.0]);
     let mut random = Random(20);
     let mut under = |i: usize, axis: [f64; 2]| -> Point {
-        let reach = if i % 10 == 0 { 0.0 } else { 10f64.powf(random.within([-7.0, -1.0])) };
+        let reach = if i.is_multiple_of(10) { 0.0 } else { 10f64.powf(random.within([-7.0, -1.0])) };
         let turn = random.within([0.0, std::f64::consts::TAU]);
         [axis[0] + reach * turn.cos(), axis[1] + reach * turn.sin(), -0.9]
     };
