@@ -35,7 +35,7 @@ mod sizes;
 use softshadow::{Light, LightShape, Receivers, look_at};
 
 use crate::common::{Random, points, rectangle};
-use crate::shapes::Point;
+use crate::shapes::{Point, Triangle};
 
 fn aimed(shape: LightShape, eye: Point, target: Point) -> Light {
     Light::new(shape, look_at(eye, target, None).unwrap()).unwrap()
@@ -55,4 +55,14 @@ fn below(random: &mut Random, count: usize) -> Receivers {
 
 fn all_around(random: &mut Random, count: usize) -> Receivers {
     points(random.points(count, [-1.0, 1.0], [-1.0, 1.0], [-1.0, 1.0]))
+}
+
+/// A triangle of any orientation; corners are up to `size` off its middle.
+fn leaf(random: &mut Random, size: f64, across: [f64; 2], up: [f64; 2]) -> Triangle {
+    let middle = random.point(across, across, up);
+    let mut corner = || {
+        let off = random.point([-size, size], [-size, size], [-size, size]);
+        [0, 1, 2].map(|k| middle[k] + off[k])
+    };
+    [corner(), corner(), corner()]
 }

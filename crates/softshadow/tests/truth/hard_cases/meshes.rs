@@ -7,24 +7,12 @@ use softshadow::{
 };
 
 use super::judge::{Case, expect_rays, settings};
-use super::{MANY, all_around, below, slanting};
+use super::{MANY, all_around, below, leaf, slanting};
 use crate::common::{Random, bits, context, lamp, rectangle, see};
 use crate::shapes::{Point, Triangle, plate, scene, sphere, torus};
 
 fn ring() -> Vec<Triangle> {
     torus(0.4, 0.17, 20, 12)
-}
-
-fn leaves(random: &mut Random, count: usize, size: f64) -> Vec<Triangle> {
-    let leaf = |random: &mut Random| {
-        let at = random.point([-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5]);
-        let mut corner = || {
-            let off = random.point([-size, size], [-size, size], [-size, size]);
-            [0, 1, 2].map(|k| at[k] + off[k])
-        };
-        [corner(), corner(), corner()]
-    };
-    (0..count).map(|_| leaf(random)).collect()
 }
 
 fn expect_mesh(name: &str, triangles: &[Triangle], seed: u64) {
@@ -129,7 +117,8 @@ fn dc14_t_junctions_are_hairlines() {
 #[test]
 fn dc15_leaves() {
     let mut random = Random(150);
-    let foliage = scene(&leaves(&mut random, 200, 0.2));
+    let leaves: Vec<_> = (0..200).map(|_| leaf(&mut random, 0.2, [-0.5, 0.5], [-0.5, 0.5])).collect();
+    let foliage = scene(&leaves);
     let places = [below(&mut random, MANY / 2), all_around(&mut random, MANY)];
     expect_rays("DC15 leaves", places.map(|receivers| Case::run(&foliage, &slanting(), &receivers)));
 }
