@@ -1,12 +1,20 @@
 //! How edges lie: DC1 to DC3.
 
 use glam::DVec3;
+use softshadow::{Light, light_points};
 use softshadow_scene::{LightFrame, LocalScene};
 
-use super::judge::{Case, expect_rays};
+use super::judge::{Case, expect_rays, settings};
 use super::{MANY, all_around, slanting};
 use crate::common::{Random, lamp, points, rectangle};
-use crate::shapes::{Point, cuboid, scene};
+use crate::shapes::{Point, cuboid, plate, scene};
+
+/// The reference point of a square lamp of size 1, whose frame has y turned.
+fn reference_of(lamp: &Light) -> DVec3 {
+    let bare = LightFrame::new(lamp, &LocalScene::new(&scene(&[]), None, 1 << 20).frame);
+    let [x, y] = bare.reference.map(f64::from);
+    DVec3::new(0.1 + x * 0.5, 0.2 - y * 0.5, 3.0)
+}
 
 #[test]
 fn dc01_a_lattice_of_ties() {
@@ -25,10 +33,7 @@ fn dc01_faces_in_one_plane_with_the_reference_point() {
     // A triangle whose plane holds the point c about which all directions are taken, and receivers in and near that plane: c lies within
     // rounding of the images of all its edges.
     let light = lamp(rectangle(1.0, 1.0), [0.1, 0.2, 3.0]);
-    let bare = LightFrame::new(&light, &LocalScene::new(&scene(&[]), None, 1 << 20).frame);
-    let [cx, cy] = bare.reference.map(f64::from);
-    // The light's frame has y turned.
-    let c = DVec3::new(0.1 + cx * 0.5, 0.2 - cy * 0.5, 3.0);
+    let c = reference_of(&light);
     let (across, down) = (DVec3::new(0.6, 0.8, 0.0), DVec3::NEG_Z);
     let normal = across.cross(down);
     let corner = |s: f64, t: f64| (c + across * s + down * t).to_array();
@@ -55,6 +60,25 @@ fn dc01_faces_in_one_plane_with_the_reference_point() {
     }
     assert!(samples > 3_000_000);
     assert_eq!(torn, 0);
+}
+
+#[test]
+fn dc01_samples_in_line_with_a_corner_and_the_reference_point() {
+    // A plate hides c, and the way from c to a sample leaves it through a corner, within rounding: exactly one of the two edges there has
+    // to take the sample, which is far from both.
+    let light = lamp(rectangle(1.0, 1.0), [0.1, 0.2, 3.0]);
+    let shade = scene(&plate([-1.0, 0.3], [-1.0, 0.4], 1.0));
+    let c = reference_of(&light);
+    let all = light_points(&shade, &light, &settings().sampling(0), &[], 0).unwrap().positions;
+    let beyond = all.into_iter().map(DVec3::from).filter(|s| s.x > c.x + 0.1 && s.y > c.y + 0.1).collect::<Vec<_>>();
+    assert!(beyond.len() > 8);
+    let corner = DVec3::new(0.3, 0.4, 1.0);
+    let mut random = Random(12);
+    let receivers = (0..MANY).map(|i| {
+        let on_the_way = c + (beyond[i % beyond.len()] - c) * random.within([0.2, 0.8]);
+        (corner + (corner - on_the_way) * random.within([0.3, 1.0])).to_array()
+    });
+    expect_rays("DC1 samples in line with a corner", [Case::run(&shade, &light, &points(receivers.collect()))]);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use softshadow::{
 
 use super::judge::{Case, expect_rays, settings};
 use super::{MANY, all_around, below, leaf, slanting};
-use crate::common::{Random, bits, context, lamp, rectangle, see};
+use crate::common::{Random, bits, context, lamp, points, rectangle, see};
 use crate::shapes::{Point, Triangle, plate, scene, sphere, torus};
 
 fn ring() -> Vec<Triangle> {
@@ -121,6 +121,16 @@ fn dc15_leaves() {
     let foliage = scene(&leaves);
     let places = [below(&mut random, MANY / 2), all_around(&mut random, MANY)];
     expect_rays("DC15 leaves", places.map(|receivers| Case::run(&foliage, &slanting(), &receivers)));
+}
+
+#[test]
+fn dc15_small_leaves_far_away() {
+    // Edges of a thousandth of their distance: corners have images that agree in nearly all digits.
+    let mut random = Random(151);
+    let leaves: Vec<_> = (0..200).map(|_| leaf(&mut random, 0.001, [-0.005, 0.005], [-0.005, 0.005])).collect();
+    let light = lamp(rectangle(0.02, 0.02), [0.001, 0.002, 2.0]);
+    let far = points(random.points(MANY, [-0.01, 0.01], [-0.01, 0.01], [-2.5, -1.5]));
+    expect_rays("DC15 small leaves far away", [Case::run(&scene(&leaves), &light, &far)]);
 }
 
 #[test]
