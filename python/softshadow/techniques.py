@@ -129,8 +129,8 @@ class DepthComplexity(Technique):
         semi-opaque hides the light. With evaluation "blended" samples alone answer, and the result's `info["notes"]`
         say so. Not over triangles.
     silhouettes : {"accurate", "standard"}
-        Which edges count: all that are silhouettes for any part of the light, as rays see them, or those of one point near
-        its middle: fewer, and wrong next to round bodies.
+        Which edges count: all that are silhouettes for any part of the light, as rays see them, or those of one point
+        near its middle: fewer, and wrong next to round bodies.
     coverage : {"exact", "table"}
         How samples beyond an edge are found: looked up and tested next to the edge, or looked up alone, as published.
     spread, tile

@@ -42,5 +42,8 @@ def against_rays() -> tuple[list[str], bool]:
 def mutants() -> tuple[list[str], bool]:
     """One thing done wrong at a time: the tests have to fail."""
     result = subprocess.run([sys.executable, Path(__file__).with_name("mutants.py")], stdout=subprocess.PIPE, text=True)
-    introduction = "Each line is one change that the tests of `softshadow_scene` and `softshadow_native` must notice."
+    introduction = (
+        "Each line is one change that the tests of `softshadow_scene` and `softshadow_native` must notice, "
+        "and for WGSL those of the device."
+    )
     return [introduction, "", *result.stdout.splitlines(), ""], result.returncode == 0

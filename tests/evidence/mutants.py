@@ -1,8 +1,9 @@
 """One change at a time to the silhouette edges, each of which the tests have to notice.
 
-Every mutant is a line of ``crates/`` written wrong: a sign flipped, an edge dropped, h for g, an epsilon at w = 0. It
-is built in a copy of the work tree, and the tests of ``softshadow_scene`` and ``softshadow_native`` must fail. A mutant
-that survives is a hole in the tests.
+Every mutant is a line of ``crates/`` or of ``shaders_wgsl/`` written wrong: a sign flipped, an edge dropped, h for g,
+an epsilon at w = 0. It is built in a copy of the work tree, and the tests of ``softshadow_scene`` and
+``softshadow_native`` must fail, or for WGSL the hard cases on the device and what else judges samples and areas there.
+A mutant that survives is a hole in the tests.
 """
 
 from __future__ import annotations
@@ -19,6 +20,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 MODEL = "crates/softshadow_native/src/depth_complexity"
 SCENE = "crates/softshadow_scene/src"
+SHADERS = "shaders_wgsl/depth_complexity"
+NATIVE = "-p softshadow_scene -p softshadow_native --no-fail-fast --quiet -- --skip real_meshes"
+DEVICE = "-p softshadow --test truth --quiet -- hard_cases depth_complexity::"
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,7 @@ class Mutant:
     file: str
     right: str
     wrong: str
+    tests: str = NATIVE
 
 
 MUTANTS = [
@@ -254,6 +259,293 @@ MUTANTS = [
         "any(|&z| z < 0.0)",
         "any(|&z| z < -1e9)",
     ),
+    Mutant(
+        "device: line by the wrong end's sign: c's side flipped",
+        f"{SHADERS}/edge.wgsl",
+        "return EdgeImage(low, high, line, is_left(low.xy, high.xy));",
+        "return EdgeImage(low, high, line, !is_left(low.xy, high.xy));",
+        DEVICE,
+    ),
+    Mutant(
+        "device: c's side by rounded products",
+        f"{SHADERS}/edge.wgsl",
+        "is_left(low.xy, high.xy));",
+        "low.x * high.y - low.y * high.x >= 0.0);",
+        DEVICE,
+    ),
+    Mutant(
+        "device: line from the farther end",
+        f"{SHADERS}/edge.wgsl",
+        "select(high, low, low_is_nearer)",
+        "select(low, high, low_is_nearer)",
+        DEVICE,
+    ),
+    Mutant(
+        "device: low end behind: direction reversed",
+        f"{SHADERS}/edge.wgsl",
+        "select(-along_image(image), image.low.xy",
+        "select(along_image(image), image.low.xy",
+        DEVICE,
+    ),
+    Mutant(
+        "device: high end behind not replaced",
+        f"{SHADERS}/edge.wgsl",
+        "select(along_image(image), image.high.xy, image.high.z > 0.0)",
+        "image.high.xy",
+        DEVICE,
+    ),
+    Mutant(
+        "device: an epsilon at w = 0",
+        f"{SHADERS}/edge.wgsl",
+        "image.low.xy, image.low.z > 0.0)",
+        "image.low.xy, image.low.z > 1e-2)",
+        DEVICE,
+    ),
+    Mutant(
+        "device: edges beyond a side by one end",
+        f"{SHADERS}/edge.wgsl",
+        "(a.x > frame.high.x * a.z && b.x",
+        "(a.x > frame.high.x * a.z || b.x",
+        DEVICE,
+    ),
+    Mutant(
+        "device: line's own sign near c",
+        f"{SHADERS}/edge.wgsl",
+        "return select(image.line.z >= 0.0, image.left, dot(low, high) < 0.0);",
+        "return image.line.z >= 0.0;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: sphere's disc ignored",
+        f"{SHADERS}/edge.wgsl",
+        "if (view.limited) {",
+        "if (view.limited && view.position.x > 1e9) {",
+        DEVICE,
+    ),
+    Mutant(
+        "device: >= for < at the end of a sector",
+        f"{SHADERS}/coverage.wgsl",
+        "c.sector_to.y * s.x < 0.0)",
+        "c.sector_to.y * s.x <= 0.0)",
+        DEVICE,
+    ),
+    Mutant(
+        "device: sector not closed",
+        f"{SHADERS}/coverage.wgsl",
+        "(c.sector_from.x * s.y - c.sector_from.y * s.x >= 0.0) & ",
+        "(c.sector_from.x > -1e30) & ",
+        DEVICE,
+    ),
+    Mutant(
+        "device: before instead of beyond the line",
+        f"{SHADERS}/coverage.wgsl",
+        "c.line.z >= 0.0) != c.beyond_left",
+        "c.line.z >= 0.0) == c.beyond_left",
+        DEVICE,
+    ),
+    Mutant(
+        "device: ends of the sector swapped",
+        f"{SHADERS}/coverage.wgsl",
+        "select(high, low, image.left), select(low, high, image.left)",
+        "select(low, high, image.left), select(high, low, image.left)",
+        DEVICE,
+    ),
+    Mutant(
+        "device: horizon flipped",
+        f"{SHADERS}/fold.wgsl",
+        "return slope.z + slope.x * s.x + slope.y * s.y <= 0.0;",
+        "return slope.z + slope.x * s.x + slope.y * s.y > 0.0;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: whole light above the horizon, wrongly",
+        f"{SHADERS}/horizon.wgsl",
+        "slope.z + lowest > 0.0",
+        "slope.z > 0.0",
+        DEVICE,
+    ),
+    Mutant(
+        "device: own triangle counts in the fold",
+        f"{SHADERS}/fold.wgsl",
+        "sum += select(left, 0, (face.reference >> 1u) == triangle);",
+        "sum += left;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: own triangle counts in D(c)",
+        f"{SHADERS}/reference_depth.wgsl",
+        "(face.triangle != receiver.triangle) & !turns_away",
+        "!turns_away",
+        DEVICE,
+    ),
+    Mutant(
+        "device: D changes in the wrong sense",
+        f"{SHADERS}/fold.wgsl",
+        "^ vec2<u32>(select(0u, 0xffffffffu, left))",
+        "^ vec2<u32>(select(0xffffffffu, 0u, left))",
+        DEVICE,
+    ),
+    Mutant(
+        "device: last edge of a chunk dropped",
+        f"{SHADERS}/fold.wgsl",
+        "for (var k = 0u; k < end; k++) {\n        let entry",
+        "for (var k = 1u; k < end; k++) {\n        let entry",
+        DEVICE,
+    ),
+    Mutant(
+        "device: weights of more than seven kept silent",
+        f"{SHADERS}/fold.wgsl",
+        "changes.many |= select(0u, bit, size > 7u);",
+        "changes.many |= 0u;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: list entry's weight negated",
+        f"{SHADERS}/cull.wgsl",
+        "let weight = select(side_a, side_a + side_b, is_pair);",
+        "let weight = -select(side_a, side_a + side_b, is_pair);",
+        DEVICE,
+    ),
+    Mutant(
+        "device: three faces at an edge taken for two",
+        f"{SHADERS}/cull.wgsl",
+        "(edge.incidence_count <= 2u) & (side_a != 0)",
+        "(edge.incidence_count <= 3u) & (side_a != 0)",
+        DEVICE,
+    ),
+    Mutant(
+        "device: margin of a list removed",
+        f"{SHADERS}/cull.wgsl",
+        "let margin = dot(abs(face.normal), shaft.half) + MARGIN * (1.0 + size.x + size.y + size.z);",
+        "let margin = 0.0;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: rounding margin of a list removed",
+        f"{SHADERS}/cull.wgsl",
+        "+ MARGIN * (1.0 + size.x + size.y + size.z);",
+        ";",
+        DEVICE,
+    ),
+    Mutant(
+        "device: bundle shaft of the other part",
+        f"{SHADERS}/cull.wgsl",
+        "        if (slot.depth != NO_VIEW && slot.part == (part & 1u)) {\n            let p",
+        "        if (slot.depth != NO_VIEW && slot.part != (part & 1u)) {\n            let p",
+        DEVICE,
+    ),
+    Mutant(
+        "device: bundle shaft to the reference point only",
+        f"{SHADERS}/cull.wgsl",
+        "bundle_shaft(lists[HEAD * position], bundle, whole_light(light_frame))",
+        "bundle_shaft(lists[HEAD * position], bundle, reference_point(light_frame))",
+        DEVICE,
+    ),
+    Mutant(
+        "device: edges left out by one end",
+        f"{SHADERS}/cull.wgsl",
+        "dot(plane.xyz, a) > plane.w && dot(plane.xyz, b) > plane.w",
+        "dot(plane.xyz, a) > plane.w || dot(plane.xyz, b) > plane.w",
+        DEVICE,
+    ),
+    Mutant(
+        "device: faces turn away by the wrong sign",
+        f"{SHADERS}/reference_depth.wgsl",
+        "((height > margin) & (slope > turn)) | ((height < -margin) & (slope < -turn))",
+        "((height > margin) & (slope < -turn)) | ((height < -margin) & (slope > turn))",
+        DEVICE,
+    ),
+    Mutant(
+        "device: faces turn away without margin",
+        f"{SHADERS}/reference_depth.wgsl",
+        "let margin = SLACK * size;",
+        "let margin = 0.0 * size;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: arc at infinity reversed",
+        f"{SHADERS}/reference_depth.wgsl",
+        "let arc = select(-1, 1, across >= 0.0);",
+        "let arc = select(1, -1, across >= 0.0);",
+        DEVICE,
+    ),
+    Mutant(
+        "device: an arc without length turns around c",
+        f"{SHADERS}/reference_depth.wgsl",
+        "let no_length = select(0, either, has_wide);",
+        "let no_length = either;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: D(c) ignores windings",
+        f"{SHADERS}/reference_depth.wgsl",
+        "let is_left = image.left == is_forward;",
+        "let is_left = image.left;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: D(c) ignores which side a face shows",
+        f"{SHADERS}/reference_depth.wgsl",
+        "return select(0, side * turns, before);",
+        "return select(0, turns, before);",
+        DEVICE,
+    ),
+    Mutant(
+        "device: faces beyond a ball of light cover c",
+        f"{SHADERS}/reference_depth.wgsl",
+        "return select(0, side * turns, before);",
+        "return side * turns;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: shaft's side by the nearest receiver",
+        f"{SHADERS}/shaft.wgsl",
+        "return Reach(max(before.sides, slopes), max(before.back, z));",
+        "return Reach(select(slopes, min(before.sides, slopes), before.sides.x > -1e29), max(before.back, z));",
+        DEVICE,
+    ),
+    Mutant(
+        "device: shaft's back one receiver's",
+        f"{SHADERS}/shaft.wgsl",
+        "max(before.sides, slopes), max(before.back, z));",
+        "max(before.sides, slopes), z);",
+        DEVICE,
+    ),
+    Mutant(
+        "device: ball reaches to its centre's plane only",
+        f"{SHADERS}/shaft.wgsl",
+        "select(reach.back, max(reach.back, r), is_sphere)",
+        "reach.back",
+        DEVICE,
+    ),
+    Mutant(
+        "device: silhouettes without margin",
+        f"{SHADERS}/silhouettes.wgsl",
+        "let margin = spread + 4e-6 * (1.0 + size + spread);",
+        "let margin = 0.0;",
+        DEVICE,
+    ),
+    Mutant(
+        "device: area of the sector, not of what lies beyond",
+        f"{SHADERS}/area.wgsl",
+        "(1.0 - share_before(line, p) * share_before(line, q))",
+        "1.0",
+        DEVICE,
+    ),
+    Mutant(
+        "device: carry lost",
+        f"{SHADERS}/counters.wgsl",
+        "next = next | (sum & twos);",
+        "next = next | 0u * (sum & twos);",
+        DEVICE,
+    ),
+    Mutant(
+        "device: row of the view about the centre",
+        f"{SHADERS}/frame.wgsl",
+        "frame.z_row * (dot(frame.x_row, from_light) - c.x)",
+        "frame.z_row * dot(frame.x_row, from_light)",
+        DEVICE,
+    ),
 ]
 
 
@@ -269,9 +561,10 @@ def main() -> int:
             target = copy / name
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, target)
-        if failing := run(copy):
-            print(f"the tests fail without any change: {failing}", file=sys.stderr)
-            return 1
+        for tests in (NATIVE, DEVICE):
+            if failing := run(copy, tests):
+                print(f"the tests fail without any change: {failing}", file=sys.stderr)
+                return 1
         for mutant in MUTANTS:
             path = copy / mutant.file
             text = path.read_text()
@@ -279,7 +572,7 @@ def main() -> int:
                 print(f"'{mutant.says}': {mutant.file} has no single place for it", file=sys.stderr)
                 return 1
             path.write_text(text.replace(mutant.right, mutant.wrong))
-            failing = run(copy)
+            failing = run(copy, mutant.tests)
             path.write_text(text)
             survivors += not failing
             shown = ", ".join(f"`{name}`" for name in failing[:2])
@@ -287,11 +580,9 @@ def main() -> int:
     return survivors
 
 
-def run(copy: Path) -> list[str]:
+def run(copy: Path, tests: str) -> list[str]:
     """Names of the failing tests; whatever else stops the build stops this."""
-    command = (
-        "cargo test --release -p softshadow_scene -p softshadow_native --no-fail-fast --quiet -- --skip real_meshes"
-    )
+    command = f"cargo test --release {tests}"
     environment = os.environ | {"CARGO_TARGET_DIR": str(copy.parent / "target"), "RUST_BACKTRACE": "0"}
     result = subprocess.run(command.split(), cwd=copy, capture_output=True, text=True, env=environment)
     if "error[" in result.stderr or "could not compile" in result.stderr:

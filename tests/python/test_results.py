@@ -240,6 +240,7 @@ def test_wedges_see_the_samples_that_tiles_see(scene, settings):
     assert wedges.info["area_receivers"] == 0
     assert any("exact_area" in note for note in wedges.info["notes"])
 
+
 def test_triangles_see_the_samples_that_edges_see_and_info_says_which(scene):
     light, camera = light_above(), camera_above((32, 24))
     edges, triangles = (

@@ -18,6 +18,7 @@ mod depth_complexity;
 mod direct_illumination;
 mod equation_6;
 mod filtered;
+mod hard_cases;
 mod hard_shadows;
 mod interleaved;
 mod invariance;
