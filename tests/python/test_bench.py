@@ -99,7 +99,7 @@ def test_shipped_scenes_are_found_with_all_their_triangles():
 
 
 def test_a_technique_that_refuses_a_scene_is_named_and_the_others_go_on():
-    techniques = [ss.DepthComplexity(samples=16), ss.RayTraced(samples=4)]
+    techniques = [ss.DepthComplexity(samples=16, unit="edges"), ss.RayTraced(samples=4)]
     result = peers.beside(find("canopy", 48), {}, techniques, rounds=1, device="software")
     assert [row.tracer for row in result.rows] == ["ray_traced"]
     assert len(result.refused) == 1

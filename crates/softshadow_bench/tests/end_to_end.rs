@@ -100,7 +100,7 @@ fn what_a_scene_refuses_is_a_named_failure_among_the_others() {
         "--repeats",
         "1",
         "--technique",
-        "depth_complexity",
+        "depth_complexity:unit=edges",
         "--technique",
         "ray_traced:samples=16",
         "--reference",
@@ -108,7 +108,7 @@ fn what_a_scene_refuses_is_a_named_failure_among_the_others() {
     ]);
     let said = text(&output.stdout);
     assert!(!output.status.success());
-    assert!(said.contains("failure: canopy, depth_complexity: "), "{said}");
+    assert!(said.contains("failure: canopy, depth_complexity:unit=edges: "), "{said}");
     assert!(said.contains("ray_traced:samples=16") && said.ends_with("0 scenes skipped, 1 cases failed\n"), "{said}");
 }
 
