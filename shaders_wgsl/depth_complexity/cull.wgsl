@@ -220,13 +220,13 @@ fn list_faces(@builtin(global_invocation_id) invocation: vec3<u32>) {
     var list = no_list();
     var node = 0u;
     var steps = 0u;
-    while (node < end && steps < LONGEST_WALK) {
-        steps++;
+    while (node < end && steps < MOST_STEPS) {
         let box = node_of(face_tree[node]);
         let met = shaft_meets_box(planes, box.low, box.high);
         node = select(box.skip, node + 1u, met);
         let first = box.leaf >> LEAF_BITS;
         let count = select(0u, box.leaf & ((1u << LEAF_BITS) - 1u), met);
+        steps += 1u + count;
         for (var k = 0u; k < count; k++) {
             list = appended(list, first + k);
         }

@@ -286,6 +286,9 @@ fn left_of_line(line: vec3<f32>) -> Left {
     return Left(select(vec2<u32>(0u), found.xy, size > TINY), select(EVERY, found.zw, size > TINY));
 }
 
+// Tests that this invocation has made so far: drivers on the CPU count steps.
+var<private> tests: u32 = 0u;
+
 // Samples that stand still are looked up; those near a border are then tested.
 fn crossed_standing(c: Crossing) -> vec2<u32> {
     let begin = left_of_direction(c.sector_from);
@@ -296,6 +299,7 @@ fn crossed_standing(c: Crossing) -> vec2<u32> {
     let beyond_possible = select(line_possible, ~line.surely, c.beyond_left);
     var mask = begin.surely & ~(end.surely | end.maybe) & beyond;
     var open = (begin.surely | begin.maybe) & ~end.surely & beyond_possible & ~mask;
+    tests += countOneBits(open.x) + countOneBits(open.y);
     while ((open.x | open.y) != 0u) {
         let is_low = open.x != 0u;
         let k = firstTrailingBit(select(open.y, open.x, is_low));
@@ -305,9 +309,6 @@ fn crossed_standing(c: Crossing) -> vec2<u32> {
     }
     return mask;
 }
-
-// As many steps as the loop above takes at most.
-const MOST_TESTS: u32 = 64u;
 
 fn below_standing(fold: Fold) -> vec2<u32> {
     let above = left_of_line(fold.slope);
@@ -492,11 +493,11 @@ fn fold(
         return;
     }
     var fold = begin(task);
-    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+    while (fold.chunk != 0u && fold.steps + tests < MOST_STEPS) {
         let at = chunk_at(fold.chunk);
         let changes = changes_in(fold.view, fold.receiver.triangle, at);
         fold.sums = fold_standing(fold.sums, fold.view, at, changes);
-        fold.steps += steps_in(at, changes, MOST_TESTS);
+        fold.steps += steps_in(at, changes, 0u);
         fold.chunk = lists[at];
     }
     finish(fold, below_standing(fold));
@@ -514,12 +515,12 @@ fn fold_areas(
     }
     var fold = begin(task);
     var area = 0;
-    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+    while (fold.chunk != 0u && fold.steps + tests < MOST_STEPS) {
         let at = chunk_at(fold.chunk);
         let changes = changes_in(fold.view, fold.receiver.triangle, at);
         fold.sums = fold_standing(fold.sums, fold.view, at, changes);
         area += area_in(fold.view, at, changes);
-        fold.steps += steps_in(at, changes, MOST_TESTS + light_frame.outline_count);
+        fold.steps += steps_in(at, changes, light_frame.outline_count);
         fold.chunk = lists[at];
     }
     finish_area(fold, area, below_standing(fold));
@@ -538,7 +539,7 @@ fn fold_own_samples(
     }
     var fold = begin(task);
     let first = first_own_sample(fold);
-    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+    while (fold.chunk != 0u && fold.steps + tests < MOST_STEPS) {
         let at = chunk_at(fold.chunk);
         let changes = changes_in(fold.view, fold.receiver.triangle, at);
         fold.sums = fold_own(fold.sums, fold.view, at, changes, first, fold.count);
@@ -561,7 +562,7 @@ fn fold_own_samples_areas(
     var fold = begin(task);
     let first = first_own_sample(fold);
     var area = 0;
-    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+    while (fold.chunk != 0u && fold.steps + tests < MOST_STEPS) {
         let at = chunk_at(fold.chunk);
         let changes = changes_in(fold.view, fold.receiver.triangle, at);
         fold.sums = fold_own(fold.sums, fold.view, at, changes, first, fold.count);
@@ -653,7 +654,7 @@ fn fold_attenuated(
     }
     var fold = begin(task);
     var sums = Attenuated(attenuation_at(fold.slot.attenuation), u32(abs(fold.slot.attenuation)));
-    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+    while (fold.chunk != 0u && fold.steps + tests < MOST_STEPS) {
         let at = chunk_at(fold.chunk);
         var waiting = before_light(fold.view, at);
         fold.steps += 4u * lists[at + 1u];
@@ -666,7 +667,7 @@ fn fold_attenuated(
             let sign = select(1, -1, image.left);
             fold.sums = with_layers(fold.sums, weight.opaque * sign, mask);
             sums = attenuated_by(sums, weight.attenuation * sign, face_count(edge), mask);
-            fold.steps += 4u + face_count(edge) + MOST_TESTS;
+            fold.steps += 4u + face_count(edge);
         }
         fold.chunk = lists[at];
     }
@@ -686,7 +687,7 @@ fn fold_attenuated_own_samples(
     var fold = begin(task);
     let first = first_own_sample(fold);
     var sums = Attenuated(attenuation_at(fold.slot.attenuation), u32(abs(fold.slot.attenuation)));
-    while (fold.chunk != 0u && fold.steps < MOST_STEPS) {
+    while (fold.chunk != 0u && fold.steps + tests < MOST_STEPS) {
         let at = chunk_at(fold.chunk);
         var waiting = before_light(fold.view, at);
         fold.steps += 4u * lists[at + 1u];

@@ -27,14 +27,20 @@
 // Rounding, with room to spare.
 const SLACK: f32 = 4e-6;
 
-fn cover_of(view: FrameView, face: Face) -> i32 {
-    var border = no_loop();
-    for (var k = 0u; k < 4u; k++) {
-        let reference = face.sides[k];
-        if (reference != NO_SIDE) {
-            border = with_image(border, edge_image(view, edge_of(edges[reference >> 1u])), (reference & 1u) == 0u);
-        }
+fn with_side(before: Loop, view: FrameView, reference: u32) -> Loop {
+    var border = before;
+    if (reference != NO_SIDE) {
+        border = with_image(border, edge_image(view, edge_of(edges[reference >> 1u])), (reference & 1u) == 0u);
     }
+    return border;
+}
+
+// Side by side without a loop: drivers on the CPU count steps.
+fn cover_of(view: FrameView, face: Face) -> i32 {
+    var border = with_side(no_loop(), view, face.sides.x);
+    border = with_side(border, view, face.sides.y);
+    border = with_side(border, view, face.sides.z);
+    border = with_side(border, view, face.sides.w);
     return cover(view, face, border);
 }
 
@@ -46,6 +52,12 @@ fn turns_away(view: FrameView, face: Face) -> bool {
     let margin = SLACK * size;
     let turn = SLACK * dot(abs(face.normal), abs(view.way));
     return ((height > margin) & (slope > turn)) | ((height < -margin) & (slope < -turn));
+}
+
+// The bit of an entry of a chunk whose face may cover the reference point. Four at a step of a loop: drivers on the CPU count steps.
+fn may_cover(view: FrameView, triangle: u32, here: u32, k: u32, end: u32) -> u32 {
+    let face = face_of(faces[lists[here + 2u + min(k, end - 1u)]]);
+    return select(0u, 1u << (k & 31u), (k < end) & (face.triangle != triangle) & !turns_away(view, face));
 }
 
 // Whether loops still run.
@@ -86,11 +98,11 @@ fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let end = lists[here + 1u];
         // Drivers on the CPU run both sides of a branch, and skip loops only.
         var waiting = 0u;
-        for (var k = 0u; k < end; k++) {
-            let face = face_of(faces[lists[here + 2u + k]]);
-            waiting |= select(0u, 1u << k, (face.triangle != receiver.triangle) & !turns_away(view, face));
+        for (var k = 0u; k < end; k += 4u) {
+            waiting |= may_cover(view, receiver.triangle, here, k, end) | may_cover(view, receiver.triangle, here, k + 1u, end)
+                | may_cover(view, receiver.triangle, here, k + 2u, end) | may_cover(view, receiver.triangle, here, k + 3u, end);
         }
-        steps += 2u * end + 5u * countOneBits(waiting);
+        steps += end / 4u + 2u + countOneBits(waiting);
         while (waiting != 0u) {
             depth += cover_of(view, face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]));
             waiting &= waiting - 1u;
@@ -138,11 +150,11 @@ fn reference_depth_attenuated(@builtin(global_invocation_id) invocation: vec3<u3
         let end = lists[here + 1u];
         // Drivers on the CPU run both sides of a branch, and skip loops only.
         var waiting = 0u;
-        for (var k = 0u; k < end; k++) {
-            let face = face_of(faces[lists[here + 2u + k]]);
-            waiting |= select(0u, 1u << k, (face.triangle != receiver.triangle) & !turns_away(view, face));
+        for (var k = 0u; k < end; k += 4u) {
+            waiting |= may_cover(view, receiver.triangle, here, k, end) | may_cover(view, receiver.triangle, here, k + 1u, end)
+                | may_cover(view, receiver.triangle, here, k + 2u, end) | may_cover(view, receiver.triangle, here, k + 3u, end);
         }
-        steps += 2u * end + 5u * countOneBits(waiting);
+        steps += end / 4u + 2u + countOneBits(waiting);
         while (waiting != 0u) {
             let face = face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]);
             let units = triangle_attenuation[face.triangle];

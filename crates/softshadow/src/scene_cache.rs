@@ -162,7 +162,8 @@ mod tests {
     #[test]
     fn a_moving_scene_takes_one_place_whether_its_frames_fail_or_not() {
         let corners = |frame: u32| vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.1 * f64::from(frame)]];
-        let mesh = Mesh::new("leaf", corners(0), vec![[0, 1, 2]], Material::default()).unwrap();
+        let mesh =
+            Mesh::new("leaf", corners(0), vec![[0, 1, 2]], Material { opacity: 0.5, ..Material::default() }).unwrap();
         let still = Scene::new(vec![mesh]).unwrap();
         let ball = |z| {
             let pose = look_at([0.0, 0.0, z], [0.0, 0.0, z - 1.0], Some([0.0, 1.0, 0.0])).unwrap();
@@ -171,7 +172,7 @@ mod tests {
         let mut cache = SceneCache::default();
         for frame in 0..10 {
             let scene = still.with_vertices(vec![Some(corners(frame))]).unwrap();
-            // Every other frame has a light that the leaf touches.
+            // Every other frame has a light that the leaf touches, which something semi-opaque must not.
             let (lights, fails) = ([ball(3.0), ball(if frame % 2 == 0 { 0.0 } else { 4.0 })], frame % 2 == 0);
             let mut preparation = Preparation::default();
             let contents = cache.contents(&scene, None, 1 << 20, &mut preparation);
