@@ -105,3 +105,24 @@ fn attenuation_of(a: Attenuation, sample: u32) -> i32 {
         | digit_of(a.p24, sample, 24u) | digit_of(a.p25, sample, 25u) | digit_of(a.p26, sample, 26u) | digit_of(a.p27, sample, 27u);
     return i32(digits << 4u) >> 4u;
 }
+
+// Layers, opaque and in units of attenuation.
+struct Layers {
+    opaque: i32,
+    attenuation: i32,
+}
+
+// What semi-opaque layers add up to beside the counters of a fold.
+struct Attenuated {
+    attenuation: Attenuation,
+    most: u32,              // by how much it can have changed at most
+}
+
+fn attenuated_by(before: Attenuated, amount: i32, faces: u32, mask: vec2<u32>) -> Attenuated {
+    let changes = (mask.x | mask.y) != 0u && amount != 0;
+    let size = select(u32(abs(amount)), LARGEST_ATTENUATION + 1u, faces > MOST_ATTENUATING_FACES);
+    return Attenuated(
+        attenuation_add(before.attenuation, mask, amount),
+        min(before.most, LARGEST_ATTENUATION + 1u) + select(0u, size, changes),
+    );
+}

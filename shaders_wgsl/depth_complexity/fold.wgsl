@@ -4,7 +4,8 @@
 //#import depth_complexity/edge.wgsl
 //#import depth_complexity/horizon.wgsl
 //#import depth_complexity/coverage.wgsl
-//#import depth_complexity/counters.wgsl
+//#import depth_complexity/coverage_table.wgsl
+//#import depth_complexity/sums.wgsl
 //#import depth_complexity/attenuation.wgsl
 //#import depth_complexity/area.wgsl
 //#import depth_complexity/tiles.wgsl
@@ -34,21 +35,6 @@ struct GroupSamples {
     at: array<vec4<f32>, 64>,
 }
 
-// For the 64 samples: which lie left of a direction, and of a line, by cells of directions and distances. Two words of those that surely do,
-// wherever in the cell, and two of those that may.
-const DIRECTIONS: u32 = 512u;
-const LINE_DIRECTIONS: u32 = 64u;
-const LINE_DISTANCES: u32 = 56u;
-const FARTHEST: f32 = 1.1;
-
-// What is smaller has no direction.
-const TINY: f32 = 1e-30;
-
-struct CoverageTable {
-    directions: array<vec4<u32>, 512>,
-    lines: array<vec4<u32>, 3584>,
-}
-
 struct Outline {
     corners: array<vec4<f32>, 64>,
 }
@@ -66,16 +52,6 @@ const MOST_AREA_LAYERS: u32 = 127u;
 // Marks an area that answers; the other bits are its float.
 const AREA_ANSWERS: u32 = 0x80000000u;
 
-// Areas are summed in this fixed point, so that the order of edges changes no bit.
-const AREA_UNITS: f32 = 4194304.0;
-
-// What the edges of one receiver add up to.
-struct Sums {
-    counters: Counters,
-    changes: u32,           // by how much D can have changed at most
-    smallest: u32,          // change of any edge
-}
-
 // D left of the edge minus D right of it.
 fn weight(view: FrameView, edge: OccluderEdge, triangle: u32) -> i32 {
     var sum = 0;
@@ -85,10 +61,6 @@ fn weight(view: FrameView, edge: OccluderEdge, triangle: u32) -> i32 {
         sum += select(left, 0, (face.reference >> 1u) == triangle);
     }
     return sum;
-}
-
-fn begin_fold(depth: i32) -> Sums {
-    return Sums(counters_at(depth), u32(abs(depth)), 0xffffu);
 }
 
 // The visible share of the area; negative where samples have to answer.
@@ -101,16 +73,6 @@ fn visible_area(sums: Sums, area: i32, depth: i32, hidden_samples: vec2<u32>, sa
     let visible = 1.0 - total / (f32(max(layers, 1u)) * light_frame.area);
     let believed = agrees && abs(visible - sampled) <= fold_settings.sampling_bound;
     return select(-1.0, clamp(visible, 0.0, 1.0), believed);
-}
-
-// The samples of a group of 64 that exist.
-fn existing(samples: u32) -> vec2<u32> {
-    let low = min(samples, 32u);
-    let high = min(max(samples, 32u) - 32u, 32u);
-    return vec2<u32>(
-        select(0u, 0xffffffffu >> (32u - max(low, 1u)), low > 0u),
-        select(0u, 0xffffffffu >> (32u - max(high, 1u)), high > 0u),
-    );
 }
 
 // What one invocation folds: a receiver and the list of its bundle.
@@ -162,28 +124,6 @@ fn chunk_at(chunk: u32) -> u32 {
     return first_chunk_word(fold_settings.tile_count) + chunk * CHUNK;
 }
 
-// The edges of a chunk that change anything for a receiver, one bit each, and by how much: binary digits, and a sign.
-struct Changes {
-    edges: u32,
-    ones: u32,
-    twos: u32,
-    fours: u32,
-    minus: u32,
-    many: u32,              // more than any counter holds
-}
-
-fn with_change(before: Changes, bit: u32, weight: i32) -> Changes {
-    var changes = before;
-    let size = u32(abs(weight));
-    changes.edges |= select(0u, bit, weight != 0);
-    changes.ones |= select(0u, bit, (size & 1u) != 0u);
-    changes.twos |= select(0u, bit, (size & 2u) != 0u);
-    changes.fours |= select(0u, bit, (size & 4u) != 0u);
-    changes.minus |= select(0u, bit, weight < 0);
-    changes.many |= select(0u, bit, size > 7u);
-    return changes;
-}
-
 // Drivers on the CPU run both sides of a branch, and skip loops only: so a loop over all edges, and one over those of unknown weight.
 fn changes_in(view: FrameView, triangle: u32, at: u32) -> Changes {
     let end = lists[at + 1u];
@@ -203,25 +143,6 @@ fn changes_in(view: FrameView, triangle: u32, at: u32) -> Changes {
         changes = with_change(changes, 1u << k, weight(view, edge_of(edges[listed_edge(lists[at + 2u + k])]), triangle));
     }
     return changes;
-}
-
-fn digit(bits: u32, k: u32) -> vec2<u32> {
-    return vec2<u32>(0u - ((bits >> k) & 1u));
-}
-
-// Adds what changes at one edge for the samples of `mask`. D grows where the reference point lies right of an edge of positive weight.
-fn folded(before: Sums, changes: Changes, k: u32, left: bool, mask: vec2<u32>) -> Sums {
-    var sums = before;
-    let ones = digit(changes.ones, k);
-    let twos = digit(changes.twos, k);
-    let fours = digit(changes.fours, k);
-    let sign = digit(changes.minus, k) ^ vec2<u32>(select(0u, 0xffffffffu, left));
-    sums.counters = counters_add(sums.counters, mask & ones, mask & twos, mask & fours, sign);
-    let size = (ones.x & 1u) + (twos.x & 2u) + (fours.x & 4u);
-    // More faces than that at one edge: counted as more than any counter holds.
-    sums.changes += select(size, LARGEST_COUNT + 1u, (digit(changes.many, k).x) != 0u);
-    sums.smallest = min(sums.smallest, size);
-    return sums;
 }
 
 // What is left to write once all edges are folded. `below` are the samples below the horizon.
@@ -255,39 +176,16 @@ fn has_steps_left() -> bool {
     return steps == LAST_STEPS;
 }
 
-// Which samples lie left of something: surely, or by a closer look.
-struct Left {
-    surely: vec2<u32>,
-    maybe: vec2<u32>,
-}
-
-const EVERY: vec2<u32> = vec2<u32>(0xffffffffu);
-
-// A number from 0 to 4 that grows with the angle of a vector, and the sum of its sizes along the axes, which must not be 0.
-fn turn_of(v: vec2<f32>, size: f32) -> f32 {
-    let q = v.y / size;
-    return select(3.0 - q, 1.0 + q, v.x >= 0.0);
-}
+// Tests that this invocation has made so far: drivers on the CPU count steps.
+var<private> tests: u32 = 0u;
 
 fn left_of_direction(v: vec2<f32>) -> Left {
-    let size = abs(v.x) + abs(v.y);
-    let cell = min(u32(turn_of(v, max(size, 1e-37)) * (f32(DIRECTIONS) / 4.0)), DIRECTIONS - 1u);
-    let found = coverage_table.directions[cell];
-    return Left(select(vec2<u32>(0u), found.xy, size > TINY), select(EVERY, found.zw, size > TINY));
+    return left_in(coverage_table.directions[cell_of_direction(v)], v);
 }
 
 fn left_of_line(line: vec3<f32>) -> Left {
-    let size = abs(line.x) + abs(line.y);
-    let turn = turn_of(line.xy, max(size, 1e-37));
-    let direction = min(u32(turn * (f32(LINE_DIRECTIONS) / 4.0)), LINE_DIRECTIONS - 1u);
-    let share = clamp(line.z / max(size, 1e-37) / (2.0 * FARTHEST) + 0.5, 0.0, 1.0);
-    let distance = min(u32(share * f32(LINE_DISTANCES)), LINE_DISTANCES - 1u);
-    let found = coverage_table.lines[direction * LINE_DISTANCES + distance];
-    return Left(select(vec2<u32>(0u), found.xy, size > TINY), select(EVERY, found.zw, size > TINY));
+    return left_in(coverage_table.lines[cell_of_line(line)], line.xy);
 }
-
-// Tests that this invocation has made so far: drivers on the CPU count steps.
-var<private> tests: u32 = 0u;
 
 // Samples that stand still are looked up; those near a border are then tested.
 fn crossed_standing(c: Crossing) -> vec2<u32> {
@@ -301,11 +199,9 @@ fn crossed_standing(c: Crossing) -> vec2<u32> {
     var open = (begin.surely | begin.maybe) & ~end.surely & beyond_possible & ~mask;
     tests += countOneBits(open.x) + countOneBits(open.y);
     while ((open.x | open.y) != 0u) {
-        let is_low = open.x != 0u;
-        let k = firstTrailingBit(select(open.y, open.x, is_low));
-        let found = select(0u, 1u << k, crosses(c, group_samples.at[select(32u + k, k, is_low)].xy));
-        mask |= select(vec2<u32>(0u, found), vec2<u32>(found, 0u), is_low);
-        open = select(vec2<u32>(0u, open.y & (open.y - 1u)), vec2<u32>(open.x & (open.x - 1u), open.y), is_low);
+        let k = first_of(open);
+        open &= ~set_of_one(k);
+        mask |= select(vec2<u32>(0u), set_of_one(k), crosses(c, group_samples.at[k].xy));
     }
     return mask;
 }
@@ -315,11 +211,9 @@ fn below_standing(fold: Fold) -> vec2<u32> {
     var mask = select(~(above.surely | above.maybe), vec2<u32>(0u), fold.is_above);
     var open = select(above.maybe, vec2<u32>(0u), fold.is_above);
     while ((open.x | open.y) != 0u) {
-        let is_low = open.x != 0u;
-        let k = firstTrailingBit(select(open.y, open.x, is_low));
-        let found = select(0u, 1u << k, is_below(fold.slope, group_samples.at[select(32u + k, k, is_low)].xy));
-        mask |= select(vec2<u32>(0u, found), vec2<u32>(found, 0u), is_low);
-        open = select(vec2<u32>(0u, open.y & (open.y - 1u)), vec2<u32>(open.x & (open.x - 1u), open.y), is_low);
+        let k = first_of(open);
+        open &= ~set_of_one(k);
+        mask |= select(vec2<u32>(0u), set_of_one(k), is_below(fold.slope, group_samples.at[k].xy));
     }
     return mask;
 }
@@ -380,8 +274,7 @@ fn below_own(fold: Fold) -> vec2<u32> {
     let first = first_own_sample(fold);
     var mask = vec2<u32>(0u);
     for (var k = 0u; k < select(fold.count, 0u, fold.is_above); k++) {
-        let found = select(0u, 1u << (k & 31u), is_below(fold.slope, own_sample(fold.view, first + k)));
-        mask |= select(vec2<u32>(found, 0u), vec2<u32>(0u, found), k >= 32u);
+        mask |= select(vec2<u32>(0u), set_of_one(k), is_below(fold.slope, own_sample(fold.view, first + k)));
     }
     return mask;
 }
@@ -400,16 +293,10 @@ fn beyond_of(image: EdgeImage) -> Beyond {
     return Beyond(line, select(high, low, image.left), select(low, high, image.left));
 }
 
-// An area in fixed point, with the sign of the change.
-fn signed_area(area: f32, changes: Changes, k: u32, left: bool) -> i32 {
-    let size = i32(((changes.ones >> k) & 1u) + 2u * ((changes.twos >> k) & 1u) + 4u * ((changes.fours >> k) & 1u));
-    let positive = (((changes.minus >> k) & 1u) != 0u) == left;
-    return i32(round(area * AREA_UNITS)) * select(-size, size, positive);
-}
-
 fn beyond_side(b: Beyond, from_corner: u32, to_corner: u32) -> f32 {
-    let corners = array<vec2<f32>, 2>(outline.corners[from_corner].xy, outline.corners[to_corner].xy);
-    return area_beyond_side(b.line, b.from_direction, b.to_direction, corners[0], corners[1]);
+    let start = outline.corners[from_corner].xy;
+    let end = outline.corners[to_corner].xy;
+    return area_beyond_side(b.line, b.from_direction, b.to_direction, start, end);
 }
 
 // The area of the light beyond the edges of a chunk: a loop for each kind of outline, skipped where it is another.
@@ -573,12 +460,6 @@ fn fold_own_samples_areas(
     finish_area(fold, area, below_own(fold));
 }
 
-// Layers, opaque and in units of attenuation.
-struct Layers {
-    opaque: i32,
-    attenuation: i32,
-}
-
 // As `weight`, of both kinds of layers.
 fn weight_of_both(view: FrameView, edge: OccluderEdge, triangle: u32) -> Layers {
     var sum = Layers(0, 0);
@@ -602,28 +483,6 @@ fn before_light(view: FrameView, at: u32) -> u32 {
         found |= select(0u, 1u << k, image_matters(light_frame, image));
     }
     return found;
-}
-
-// What semi-opaque layers add up to beside the counters of a fold.
-struct Attenuated {
-    attenuation: Attenuation,
-    most: u32,              // by how much it can have changed at most
-}
-
-fn attenuated_by(before: Attenuated, amount: i32, faces: u32, mask: vec2<u32>) -> Attenuated {
-    let changes = (mask.x | mask.y) != 0u && amount != 0;
-    let size = select(u32(abs(amount)), LARGEST_ATTENUATION + 1u, faces > MOST_ATTENUATING_FACES);
-    return Attenuated(
-        attenuation_add(before.attenuation, mask, amount),
-        min(before.most, LARGEST_ATTENUATION + 1u) + select(0u, size, changes),
-    );
-}
-
-fn with_layers(before: Sums, change: i32, mask: vec2<u32>) -> Sums {
-    var sums = before;
-    sums.counters = counters_change(sums.counters, mask, change);
-    sums.changes += most_change(change);
-    return sums;
 }
 
 fn finish_attenuated(fold: Fold, attenuated: Attenuated, below: vec2<u32>) {

@@ -60,6 +60,17 @@ fn may_cover(view: FrameView, triangle: u32, here: u32, k: u32, end: u32) -> u32
     return select(0u, 1u << (k & 31u), (k < end) & (face.triangle != triangle) & !turns_away(view, face));
 }
 
+// The entries of a chunk whose faces may. Drivers on the CPU run both sides of a branch, and skip loops only: so who tests them goes over
+// these bits.
+fn candidates(view: FrameView, triangle: u32, here: u32, end: u32) -> u32 {
+    var found = 0u;
+    for (var k = 0u; k < end; k += 4u) {
+        found |= may_cover(view, triangle, here, k, end) | may_cover(view, triangle, here, k + 1u, end)
+            | may_cover(view, triangle, here, k + 2u, end) | may_cover(view, triangle, here, k + 3u, end);
+    }
+    return found;
+}
+
 // Whether loops still run.
 fn has_steps_left() -> bool {
     var steps = 0u;
@@ -96,12 +107,7 @@ fn reference_depth(@builtin(global_invocation_id) invocation: vec3<u32>) {
     while (chunk != 0u && steps < MOST_STEPS) {
         let here = base + chunk * CHUNK;
         let end = lists[here + 1u];
-        // Drivers on the CPU run both sides of a branch, and skip loops only.
-        var waiting = 0u;
-        for (var k = 0u; k < end; k += 4u) {
-            waiting |= may_cover(view, receiver.triangle, here, k, end) | may_cover(view, receiver.triangle, here, k + 1u, end)
-                | may_cover(view, receiver.triangle, here, k + 2u, end) | may_cover(view, receiver.triangle, here, k + 3u, end);
-        }
+        var waiting = candidates(view, receiver.triangle, here, end);
         steps += end / 4u + 2u + countOneBits(waiting);
         while (waiting != 0u) {
             depth += cover_of(view, face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]));
@@ -148,12 +154,7 @@ fn reference_depth_attenuated(@builtin(global_invocation_id) invocation: vec3<u3
     while (chunk != 0u && steps < MOST_STEPS) {
         let here = base + chunk * CHUNK;
         let end = lists[here + 1u];
-        // Drivers on the CPU run both sides of a branch, and skip loops only.
-        var waiting = 0u;
-        for (var k = 0u; k < end; k += 4u) {
-            waiting |= may_cover(view, receiver.triangle, here, k, end) | may_cover(view, receiver.triangle, here, k + 1u, end)
-                | may_cover(view, receiver.triangle, here, k + 2u, end) | may_cover(view, receiver.triangle, here, k + 3u, end);
-        }
+        var waiting = candidates(view, receiver.triangle, here, end);
         steps += end / 4u + 2u + countOneBits(waiting);
         while (waiting != 0u) {
             let face = face_of(faces[lists[here + 2u + firstTrailingBit(waiting)]]);

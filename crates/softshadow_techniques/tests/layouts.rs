@@ -186,7 +186,7 @@ fn shader(file: &str) -> &'static str {
 }
 
 /// Constants of `depth_complexity`, each with what the kernels make of it.
-fn counted_by_kernels() -> [(&'static str, u64); 16] {
+fn counted_by_kernels() -> [(&'static str, u64); 19] {
     let bytes = |file: &str, name| u64::from(twin(&format!("depth_complexity/{file}.wgsl"), name).bytes);
     let value = |file: &str, name| constant(shader(&format!("depth_complexity/{file}.wgsl")), name).unwrap();
     [
@@ -201,6 +201,9 @@ fn counted_by_kernels() -> [(&'static str, u64); 16] {
         ("SET_SAMPLES", bytes("sample_sets", "SampleSets") / 8),
         ("MOST_CORNERS", bytes("fold", "Outline") / 16),
         ("GROUP", bytes("fold", "GroupSamples") / 16),
+        ("DIRECTIONS", value("coverage_table", "DIRECTIONS")),
+        ("LINE_DIRECTIONS", value("coverage_table", "LINE_DIRECTIONS")),
+        ("LINE_DISTANCES", value("coverage_table", "LINE_DISTANCES")),
         ("HEAD_BYTES", 4 * value("tiles", "HEAD")),
         ("BUNDLES", value("tiles", "BUNDLES")),
         ("STRIDES", value("walk", "STRIDES")),
@@ -221,8 +224,9 @@ fn source(path: &str) -> String {
 
 #[test]
 fn what_depth_complexity_counts_is_what_its_kernels_count() {
-    let text =
-        ["covered", "mod", "tiled", "values"].map(|name| source(&format!("src/depth_complexity/{name}.rs"))).concat();
+    let text = ["coverage_table", "covered", "mod", "tiled", "values"]
+        .map(|name| source(&format!("src/depth_complexity/{name}.rs")))
+        .concat();
     assert_eq!(contradicted(&text), Vec::<&str>::new());
     // Any of them one off, or gone, is named.
     for (name, value) in counted_by_kernels() {
@@ -244,6 +248,13 @@ fn lists_of_edges_lie_as_plans_say() {
             .contains("u64::from(tile_count) * (2 * HEAD_BYTES + CHUNKS_PER_TILE * CHUNK_BYTES)")
     );
     let of = |name| constant(tiles, name).unwrap();
+    // A table holds all its cells, and both sides agree how far they reach.
+    let table = twin("depth_complexity/coverage_table.wgsl", "CoverageTable");
+    let cells = |name| constant(shader("depth_complexity/coverage_table.wgsl"), name).unwrap() as u32;
+    assert_eq!(table.members[1], ("lines".to_owned(), 16 * cells("DIRECTIONS")));
+    assert_eq!(table.bytes, 16 * (cells("DIRECTIONS") + cells("LINE_DIRECTIONS") * cells("LINE_DISTANCES")));
+    assert!(shader("depth_complexity/coverage_table.wgsl").contains("const FARTHEST: f32 = 1.1;"));
+    assert!(source("src/depth_complexity/coverage_table.rs").contains("const FARTHEST: f64 = 1.1;"));
     assert_eq!(of("CHUNK"), of("CHUNK_EDGES") + 2);
     assert_eq!(of("HEAD"), of("BUNDLES") + 2);
     assert_eq!(of("TILE"), of("BUNDLES") * of("BUNDLE"));

@@ -41,9 +41,10 @@
 //! texture. Samples are off as for `ray_traced`, and averages of interleaved ones leave what areas answered alone. Where too many
 //! edges lie before one receiver, or a walk over triangles takes too many steps for a software driver, the call ends with an error that names
 //! the way out. On a canopy of 20,000 leaves triangles cost what `ray_traced` costs, and not less: 1.01 times its CPU time for 16 samples at
-//! 512 × 512 on Mesa's software driver, 1.13 for 64, 1.7 for 256, at the same error. Edges cannot run there. Triangles that touch a sphere
-//! light are tried against every sample as rays would; refused where anything is semi-opaque, or blended. `attenuation: sum` is right for one sheet alone: two of opacity 0.5 hide everything, where a
-//! quarter passes, and a closed body is two sheets.
+//! 512 × 512 on Mesa's software driver, 1.13 for 64, 1.7 for 256, at the same error. Edges cannot run there. Triangles
+//! that touch a sphere light are tried against every sample as rays would; refused where anything is semi-opaque, or
+//! blended. `attenuation: sum` is right for one sheet alone: two of opacity 0.5 hide everything, where a quarter
+//! passes, and a closed body is two sheets.
 //! `table` puts samples within a cell of an edge on either side of it: some in a thousand.
 //! `standard` silhouettes are for comparison: a round body's penumbra is too narrow, and counts do not close.
 //! Blended: points are refused, and so are scenes with semi-opaque triangles, and receivers that stand half a pixel from the middle of
