@@ -4,7 +4,8 @@ use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use softshadow_engine::{AdapterChoice, AdapterInfo, DeviceKind, Engine};
+use softshadow_engine::{AdapterChoice, WgpuEngine};
+use softshadow_plan::{AdapterInfo, DeviceKind, Engine};
 use softshadow_scene::{Light, Receivers, Scene};
 use softshadow_techniques::{OccluderContents, SceneContents};
 
@@ -51,7 +52,7 @@ pub fn adapters() -> Vec<AdapterInfo> {
 pub struct Context {
     choice: AdapterChoice,
     adapter: AdapterInfo,
-    engine: Mutex<Arc<Engine>>,
+    engine: Mutex<Arc<dyn Engine>>,
     scenes: Mutex<SceneCache>,
 }
 
@@ -75,7 +76,7 @@ impl Context {
             DeviceChoice::Software => AdapterChoice::Software,
             DeviceChoice::Index(index) => AdapterChoice::Index(index),
         };
-        let engine = Engine::new(choice)?;
+        let engine = WgpuEngine::new(choice)?;
         let adapter = engine.adapter().clone();
         if adapter.device_type == DeviceKind::Software {
             log::warn!("'{}' is a software adapter: everything runs on the CPU", adapter.name);
@@ -95,10 +96,10 @@ impl Context {
     }
 
     /// The engine; opened again where the device was lost.
-    pub(crate) fn engine(&self) -> Result<Arc<Engine>, Error> {
+    pub(crate) fn engine(&self) -> Result<Arc<dyn Engine>, Error> {
         let mut engine = lock(&self.engine);
         if engine.is_lost() {
-            *engine = Arc::new(Engine::new(self.choice)?);
+            *engine = Arc::new(WgpuEngine::new(self.choice)?);
         }
         Ok(Arc::clone(&engine))
     }

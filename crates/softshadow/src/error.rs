@@ -1,6 +1,6 @@
 //! Everything that a call can end in, by what the caller can do about it.
 
-use softshadow_engine::EngineError;
+use softshadow_plan::EngineError;
 use softshadow_plan::PlanError;
 use softshadow_scene::SceneError;
 use softshadow_techniques::TechniqueError;

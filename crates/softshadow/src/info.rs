@@ -1,7 +1,7 @@
 //! What made a result: every result carries it.
 
 use serde::Serialize;
-use softshadow_engine::{AdapterInfo, PassTime, RunReport};
+use softshadow_plan::{AdapterInfo, PassTime, RunReport};
 use softshadow_scene::{LocalScene, Scene};
 use softshadow_techniques::Technique;
 use softshadow_techniques::depth_complexity::Evaluation;

@@ -32,8 +32,8 @@ pub use error::Error;
 pub use info::{Info, Preparation};
 pub use light_points::{LightPoints, light_points};
 pub use render::{Picture, PictureOptions, render};
-pub use softshadow_engine::{AdapterInfo, DeviceKind, PassTime, Timing};
 pub use softshadow_measure as measure;
+pub use softshadow_plan::{AdapterInfo, DeviceKind, PassTime, Timing};
 pub use softshadow_scene::{
     Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, STRETCH_LIMIT,
     SamplePattern, SampleSpread, Scene, SceneError, UpAxis, look_at, procedural, scene_file,

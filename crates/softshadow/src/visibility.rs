@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use softshadow_engine::{RunReport, StageReport, Timing};
-use softshadow_plan::{Content, ContentKey};
+use softshadow_plan::{Content, ContentKey, RunReport, StageReport, Timing};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::depth_complexity::LIST_COUNTS;
 use softshadow_techniques::depth_complexity::blended::{LARGEST_COUNTS, Largest};

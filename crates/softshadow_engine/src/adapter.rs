@@ -2,43 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use serde::Serialize;
-use softshadow_plan::{Features, Host, Limits};
-
-use crate::error::EngineError;
-
-/// What kind of device stands behind an adapter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum DeviceKind {
-    /// A graphics processor.
-    Gpu,
-    /// A driver that runs on the CPU.
-    Software,
-    /// wgpu's backend that validates and computes nothing.
-    Noop,
-}
-
-/// What is known about an adapter.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct AdapterInfo {
-    /// Position in [`adapters`].
-    pub index: usize,
-    /// The driver's name for it.
-    pub name: String,
-    /// Graphics interface: `vulkan`, `gl`, `metal`, `dx12` or `noop`.
-    pub backend: String,
-    /// Kind of device.
-    pub device_type: DeviceKind,
-    /// Driver and its version.
-    pub driver: String,
-    /// Largest storage binding in bytes.
-    pub storage_binding_bytes: u64,
-    /// Largest width of a texture.
-    pub texture_size: u32,
-    /// Optional abilities that the library can use.
-    pub features: Vec<&'static str>,
-}
+use softshadow_plan::{AdapterInfo, DeviceKind, EngineError, Features, Host, Limits};
 
 /// Which adapter to take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

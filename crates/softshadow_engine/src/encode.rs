@@ -2,11 +2,11 @@
 
 use softshadow_plan::{Count, Over, Pass, Plan, Raster, ResourceId, SLICE, VertexSource, Work};
 
-use crate::error::EngineError;
 use crate::pipelines::Pipelines;
 use crate::pool::Slot;
 use crate::schedule::Dispatch;
 use crate::timing::Timestamps;
+use softshadow_plan::EngineError;
 
 /// Distance of two slices in their buffer; at least the uniform offset alignment of every device.
 pub(crate) const SLICE_STRIDE: u64 = 256;

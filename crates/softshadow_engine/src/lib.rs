@@ -11,7 +11,5 @@ mod run;
 mod schedule;
 mod timing;
 
-pub use adapter::{AdapterChoice, AdapterInfo, DeviceKind, adapters};
-pub use error::EngineError;
-pub use run::{Engine, RunReport, StageReport};
-pub use timing::{PassTime, Timing};
+pub use adapter::{AdapterChoice, adapters};
+pub use run::WgpuEngine;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use softshadow_plan::{Blend, Compare, DepthTarget, Kernel, Plan, Raster, RasterKernel, Shape, TextureFormat};
 
-use crate::error::EngineError;
+use softshadow_plan::EngineError;
 
 /// What a raster pipeline depends on beside its shaders.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]

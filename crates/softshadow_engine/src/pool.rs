@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use softshadow_plan::{Content, ContentKey, Origin, Resource, Shape};
 
-use crate::error::EngineError;
 use crate::pipelines::texture_format;
+use softshadow_plan::EngineError;
 
 /// Runs after which uploads that were not used are given back. Other buffers are given back after one: a caller's memory limit
 /// holds for each call, and its buffers must not pile up.

@@ -4,22 +4,24 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
-use softshadow_plan::{Content, ContentKey, Host, Origin, Plan, Program, ResourceId, SLICE, Stage, Step, check};
+use softshadow_plan::{
+    AdapterInfo, Content, ContentKey, DeviceKind, Engine, EngineError, Host, OnStage, Origin, PassTime, Plan, Program,
+    ResourceId, RunReport, SLICE, Stage, StageReport, Step, Timing, check,
+};
 
-use crate::adapter::{AdapterChoice, AdapterInfo, DeviceKind, Opened, open};
+use crate::adapter::{AdapterChoice, Opened, open};
 use crate::encode::{Encoding, SLICE_STRIDE};
-use crate::error::EngineError;
+use crate::error::from_wgpu;
 use crate::pipelines::Pipelines;
 use crate::pool::{Pool, Slot};
 use crate::schedule::{Dispatch, schedule};
-use crate::timing::{PassTime, Timestamps, Timing, add_times};
+use crate::timing::Timestamps;
 
 /// How long one submission may take.
 const TIMEOUT_SECONDS: u64 = 300;
 
 /// An open device and everything that is kept on it between runs. Runs take turns.
-pub struct Engine {
+pub struct WgpuEngine {
     opened: Opened,
     state: Mutex<State>,
 }
@@ -30,80 +32,34 @@ struct State {
     pool: Pool,
 }
 
-/// What one stage produced.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StageReport {
-    /// Position of the stage in its program.
-    pub index: usize,
-    /// Contents of the plan's outputs, by label.
-    pub outputs: BTreeMap<String, Vec<u8>>,
-}
-
-/// What a run cost.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct RunReport {
-    /// Wall time from the first stage to the last result, in milliseconds.
-    pub wall_ms: f64,
-    /// Time by pass, where the device has a clock.
-    pub pass_ms: Vec<PassTime>,
-    /// Exact bytes by resource of the largest stage.
-    pub bytes: Vec<(String, u64)>,
-    /// Command buffers handed to the device.
-    pub submissions: usize,
-    /// Stages.
-    pub stages: usize,
-}
-
-impl Engine {
-    /// Opens a device.
-    ///
-    /// # Errors
-    /// [`EngineError::NoAdapter`] says how to install one.
-    pub fn new(choice: AdapterChoice) -> Result<Self, EngineError> {
-        Ok(Self { opened: open(choice)?, state: Mutex::default() })
-    }
-
-    /// What the device is.
-    #[must_use]
-    pub fn adapter(&self) -> &AdapterInfo {
+impl Engine for WgpuEngine {
+    fn adapter(&self) -> &AdapterInfo {
         &self.opened.info
     }
 
-    /// What the device can do.
-    #[must_use]
-    pub fn host(&self) -> Host {
+    fn host(&self) -> Host {
         self.opened.host
     }
 
-    /// Whether the device is gone; then a new engine has to be made.
-    #[must_use]
-    pub fn is_lost(&self) -> bool {
+    fn is_lost(&self) -> bool {
         lock(&self.opened.lost).is_some()
     }
 
-    /// Destroys the device as a failing driver would: every later run ends in [`EngineError::DeviceLost`].
-    pub fn destroy(&self) {
+    fn destroy(&self) {
         self.opened.device.destroy();
         lock(&self.opened.lost).get_or_insert_with(|| "destroyed by the caller".to_owned());
     }
 
-    /// Gives uploads back that will not be used again, such as the last frame of a scene that moves. A run that uses one all the same
-    /// uploads it again.
-    pub fn forget(&self, contents: &[ContentKey]) {
+    fn forget(&self, contents: &[ContentKey]) {
         lock(&self.state).pool.forget(contents);
     }
 
-    /// Runs a program. `on_stage` receives each stage's outputs and returns whether to go on; it is also asked, with `None`,
-    /// between the submissions of a stage that was split.
-    ///
-    /// # Errors
-    /// Any [`EngineError`]; the engine stays usable unless the device was lost.
-    pub fn run(
+    fn run(
         &self,
         program: &dyn Program,
         contents: &BTreeMap<ContentKey, Content>,
         timing: Timing,
-        on_stage: &mut dyn FnMut(Option<StageReport>) -> bool,
+        on_stage: OnStage<'_>,
     ) -> Result<RunReport, EngineError> {
         let mut state = lock(&self.state);
         state.pool.begin_run();
@@ -135,6 +91,16 @@ impl Engine {
         }
         Ok(report)
     }
+}
+
+impl WgpuEngine {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// [`EngineError::NoAdapter`] says how to install one.
+    pub fn new(choice: AdapterChoice) -> Result<Self, EngineError> {
+        Ok(Self { opened: open(choice)?, state: Mutex::default() })
+    }
 
     fn run_stage(
         &self,
@@ -143,7 +109,7 @@ impl Engine {
         contents: &BTreeMap<ContentKey, Content>,
         timing: Timing,
         report: &mut RunReport,
-        on_stage: &mut dyn FnMut(Option<StageReport>) -> bool,
+        on_stage: OnStage<'_>,
     ) -> Result<BTreeMap<String, Vec<u8>>, EngineError> {
         let (plan, device) = (&stage.plan, &self.opened.device);
         self.fail_if_lost(&plan.name)?;
@@ -162,7 +128,7 @@ impl Engine {
         }
         self.fail_if_lost(&plan.name)?;
         if let Some(error) = caught {
-            return Err(EngineError::from_wgpu(&plan.name, &error));
+            return Err(from_wgpu(&plan.name, &error));
         }
         if let Some(reason) = lock(&self.opened.uncaught).take() {
             return Err(EngineError::Refused { stage: plan.name.clone(), reason });
@@ -184,7 +150,7 @@ impl Engine {
         contents: &BTreeMap<ContentKey, Content>,
         timing: Timing,
         report: &mut RunReport,
-        on_stage: &mut dyn FnMut(Option<StageReport>) -> bool,
+        on_stage: OnStage<'_>,
     ) -> Result<BTreeMap<String, Vec<u8>>, EngineError> {
         let (plan, values) = (&stage.plan, &stage.values);
         let (device, queue) = (&self.opened.device, &self.opened.queue);
@@ -229,11 +195,11 @@ impl Engine {
             let mut read = self.wait(&plan.name, &waiting)?;
             if let (Some(timestamps), true) = (&timestamps, clock.is_some()) {
                 let times = timestamps.read(&read.remove(0), queue.get_timestamp_period());
-                add_times(&mut report.pass_ms, times);
+                report.add_times(times);
             }
             if let (Timing::EachPass, [dispatch]) = (timing, dispatches.as_slice()) {
                 let ms = submitted.elapsed().as_secs_f64() * 1e3;
-                add_times(&mut report.pass_ms, vec![PassTime { label: dispatch.pass.label.clone(), ms }]);
+                report.add_times(vec![PassTime { label: dispatch.pass.label.clone(), ms }]);
             }
             if number == last {
                 let labels = outputs.iter().map(|id| plan.resources[id.index()].label.clone());

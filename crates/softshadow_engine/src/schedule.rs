@@ -2,7 +2,7 @@
 
 use softshadow_plan::{Host, Over, Pass, Plan, Work};
 
-use crate::timing::Timing;
+use softshadow_plan::Timing;
 
 /// Steps of one submission over items: below a second on a slow software driver, so that watchdogs stay quiet and a caller can
 /// stop in between. Work of an indirect dispatch is known to the device alone: who plans one bounds it by the size of its blocks.

@@ -1,25 +1,6 @@
 //! Time of each pass by the device's own clock, where it has one.
 
-use serde::Serialize;
-
-/// How passes are timed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Timing {
-    /// By the device's clock, where it has one that can be trusted; costs nothing.
-    #[default]
-    Device,
-    /// By the wall clock, each pass in a submission of its own; the whole takes longer.
-    EachPass,
-}
-
-/// Time of one pass by the device's clock.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PassTime {
-    /// The pass.
-    pub label: String,
-    /// Milliseconds.
-    pub ms: f64,
-}
+use softshadow_plan::PassTime;
 
 pub(crate) struct Timestamps {
     queries: wgpu::QuerySet,
@@ -87,15 +68,5 @@ impl Timestamps {
             }
         }
         times
-    }
-}
-
-/// Adds the times of passes to those of earlier submissions.
-pub(crate) fn add_times(total: &mut Vec<PassTime>, times: Vec<PassTime>) {
-    for time in times {
-        match total.iter_mut().find(|t| t.label == time.label) {
-            Some(known) => known.ms += time.ms,
-            None => total.push(time),
-        }
     }
 }

@@ -2,6 +2,8 @@
 //! check, print, compare or weigh a plan.
 
 mod check;
+mod engine;
+mod engine_error;
 mod explain;
 mod host;
 mod pass;
@@ -10,6 +12,8 @@ mod program;
 mod resource;
 
 pub use check::{PlanError, check};
+pub use engine::{AdapterInfo, DeviceKind, Engine, OnStage, PassTime, RunReport, StageReport, Timing};
+pub use engine_error::EngineError;
 pub use host::{Features, Host, Limits};
 pub use pass::{
     Blend, ColorTarget, Compare, Count, DepthTarget, Kernel, Over, Pass, Raster, RasterKernel, VertexSource, Work,

@@ -103,10 +103,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &HardShadowMap) -> Plan {
         layers: (views.len() as u32).max(2),
     };
     let depth_map = plan.resource("depth map", map, Origin::Transient);
-    let corners = match plan.find("corners 0") {
-        Some(_) => (0..request.scene.corners.len()).filter_map(|i| plan.find(&format!("corners {i}"))).collect(),
-        None => scene_buffers::append_corners(&mut plan, request.scene),
-    };
+    let corners = scene_buffers::append_corners(&mut plan, request.scene);
     for layer in 0..views.len() as u32 {
         let view = plan.parameter(format!("shadow view {layer}"), size_of::<ShadowView>() as u64);
         for (index, (buffer, sub_scene)) in corners.iter().zip(&request.scene.local.sub_scenes).enumerate() {

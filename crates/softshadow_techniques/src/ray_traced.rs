@@ -169,10 +169,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &RayTraced) -> Plan {
         samples: opacity::append(&mut plan, request, settings.samples, light.sampling, blocked),
     });
     if !request.scene.local.sub_scenes.is_empty() {
-        let corners = match plan.find("corners 0") {
-            Some(_) => (0..request.scene.corners.len()).filter_map(|i| plan.find(&format!("corners {i}"))).collect(),
-            None => scene_buffers::append_corners(&mut plan, request.scene),
-        };
+        let corners = scene_buffers::append_corners(&mut plan, request.scene);
         let nodes = scene_buffers::append_nodes(&mut plan, request.scene);
         let range = |plan: &mut Plan, stage: &str, index: usize| {
             plan.parameter(format!("{stage} range {index}"), size_of::<TraceRange>() as u64)

@@ -46,10 +46,17 @@ const ALLOWED: [(&str, &[&str]); 10] = [
     ("softshadow_plan", &["softshadow_shaders"]),
     ("softshadow_techniques", &["softshadow_plan", "softshadow_scene", "softshadow_shaders"]),
     ("softshadow_engine", &["softshadow_plan", "softshadow_shaders"]),
-    ("softshadow_native", &["softshadow_scene"]),
+    ("softshadow_native", &["softshadow_plan", "softshadow_scene"]),
     (
         "softshadow",
-        &["softshadow_engine", "softshadow_measure", "softshadow_plan", "softshadow_scene", "softshadow_techniques"],
+        &[
+            "softshadow_engine",
+            "softshadow_measure",
+            "softshadow_native",
+            "softshadow_plan",
+            "softshadow_scene",
+            "softshadow_techniques",
+        ],
     ),
     // Both use the front door alone, and nobody uses them.
     ("softshadow_python", &["softshadow"]),

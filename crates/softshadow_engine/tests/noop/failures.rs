@@ -2,15 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use softshadow_engine::{Engine, EngineError, Timing};
-use softshadow_plan::{Content, Kernel, Over, Plan, PlanError, Program, Shape, Step, Values};
+use softshadow_engine::WgpuEngine;
+use softshadow_plan::{
+    Content, Engine as _, EngineError, Kernel, Over, Plan, PlanError, Program, Shape, Step, Timing, Values,
+};
 
 use crate::programs::{Stages, engine, place, run};
 
 /// The error of a run on an engine that is good before and after.
 fn error_of(stage: (Plan, Values)) -> EngineError {
     let engine = engine();
-    let good = |engine: &Engine| assert!(run(engine, &Stages(vec![place(10, 1)]), Timing::Device).is_ok());
+    let good = |engine: &WgpuEngine| assert!(run(engine, &Stages(vec![place(10, 1)]), Timing::Device).is_ok());
     good(&engine);
     let error = run(&engine, &Stages(vec![stage]), Timing::Device).expect_err("the spoilt stage ran");
     good(&engine);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use softshadow_engine::{EngineError, Timing};
+use softshadow_plan::{Engine as _, EngineError, Timing};
 
 use crate::programs::{Stages, engine, place, run};
 

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use softshadow_engine::{AdapterChoice, Engine, EngineError, RunReport, StageReport, Timing};
-use softshadow_plan::{Kernel, Over, Plan, Program, Step, Values};
+use softshadow_engine::{AdapterChoice, WgpuEngine};
+use softshadow_plan::{
+    Engine as _, EngineError, Kernel, Over, Plan, Program, RunReport, StageReport, Step, Timing, Values,
+};
 
 /// Stages that are known beforehand.
 pub(crate) struct Stages(pub(crate) Vec<(Plan, Values)>);
@@ -14,8 +16,8 @@ impl Program for Stages {
     }
 }
 
-pub(crate) fn engine() -> Engine {
-    Engine::new(AdapterChoice::Noop).unwrap()
+pub(crate) fn engine() -> WgpuEngine {
+    WgpuEngine::new(AdapterChoice::Noop).unwrap()
 }
 
 /// Places `count` points, each of which is said to cost `work` steps.
@@ -35,7 +37,7 @@ pub(crate) fn place(count: u32, work: u32) -> (Plan, Values) {
 
 /// Runs stages without contents and collects what they report.
 pub(crate) fn run(
-    engine: &Engine,
+    engine: &WgpuEngine,
     program: &dyn Program,
     timing: Timing,
 ) -> Result<(RunReport, Vec<StageReport>), EngineError> {

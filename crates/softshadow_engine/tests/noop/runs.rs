@@ -1,7 +1,7 @@
 //! What a run reports, and what it hands out.
 
-use softshadow_engine::{DeviceKind, Engine, Timing};
-use softshadow_plan::{Host, Plan, Program, Step, Values};
+use softshadow_engine::WgpuEngine;
+use softshadow_plan::{DeviceKind, Engine as _, Host, Plan, Program, Step, Timing, Values};
 
 use crate::programs::{Stages, engine, place, run};
 
@@ -60,7 +60,7 @@ fn a_stage_without_passes_hands_out_what_an_earlier_one_left() {
 
 #[test]
 fn every_pass_is_timed_alone_when_that_is_asked_for() {
-    let timed = |engine: &Engine, timing| {
+    let timed = |engine: &WgpuEngine, timing| {
         let (report, _) = run(engine, &Stages(vec![place(100, 1), place(50, 1)]), timing).unwrap();
         report.pass_ms.into_iter().map(|t| t.label).collect::<Vec<_>>()
     };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use softshadow_engine::{EngineError, StageReport, Timing};
+use softshadow_plan::{Engine as _, EngineError, StageReport, Timing};
 
 use crate::programs::{Stages, engine, place, run};
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use softshadow_engine::{Engine, RunReport, StageReport, Timing};
-use softshadow_plan::{Content, ContentKey};
+use softshadow_engine::WgpuEngine;
+use softshadow_plan::{Content, ContentKey, Engine as _, RunReport, StageReport, Timing};
 use softshadow_scene::{
     Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, SampleSpread, Scene, look_at,
 };
@@ -74,7 +74,7 @@ fn techniques() -> Vec<Technique> {
 }
 
 /// Whether a technique serves such receivers of such a scene here.
-fn serves(technique: &Technique, scene: &SceneContents, receivers: ReceiverSource<'_>, engine: &Engine) -> bool {
+fn serves(technique: &Technique, scene: &SceneContents, receivers: ReceiverSource<'_>, engine: &WgpuEngine) -> bool {
     technique.check_call(receivers, &lights()[..1], &engine.host()).is_ok() && technique.check_scene(scene).is_ok()
 }
 
@@ -92,7 +92,7 @@ fn occluders(scene: &SceneContents, lights: &[Light]) -> Vec<Arc<OccluderContent
 }
 
 /// Runs a program and returns the size of every output by stage.
-fn sizes(engine: &Engine, program: &VisibilityProgram<'_>) -> (RunReport, Vec<BTreeMap<String, usize>>) {
+fn sizes(engine: &WgpuEngine, program: &VisibilityProgram<'_>) -> (RunReport, Vec<BTreeMap<String, usize>>) {
     program.check().unwrap();
     let everything = program.scene.contents().chain(program.occluders.iter().flat_map(|o| o.contents()));
     let uploads: BTreeMap<ContentKey, Content> = everything.map(|c| (c.key, c.clone())).collect();

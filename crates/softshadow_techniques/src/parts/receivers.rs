@@ -7,7 +7,7 @@ use softshadow_plan::{
 };
 use softshadow_scene::{LocalCamera, LocalPoint, Points};
 
-use crate::parts::scene_buffers::append_corners;
+use crate::parts::scene_buffers::{append_corners, append_nodes};
 use crate::request::{ReceiverSource, Request};
 
 /// Label of the receivers' buffer.
@@ -18,6 +18,7 @@ pub const RECEIVER_BYTES: u64 = 32;
 const DRAW_IDS: RasterKernel =
     RasterKernel { file: "receivers/draw_triangle_ids.wgsl", vertex: "draw", fragment: Some("write_id") };
 const PLACE_ON_TRIANGLES: Kernel = Kernel { file: "receivers/place_on_triangles.wgsl", entry: "place" };
+const TRACE_CAMERA: Kernel = Kernel { file: "receivers/trace_camera.wgsl", entry: "trace_camera" };
 const PLACE_POINTS: Kernel = Kernel { file: "receivers/place_points.wgsl", entry: "place" };
 
 /// A receiver as the kernels write it.
@@ -128,6 +129,35 @@ pub fn values(request: &Request<'_>, values: &mut Values) {
 
 fn append_camera(plan: &mut Plan, request: &Request<'_>, size: [u32; 2], receivers: ResourceId) {
     let corners = append_corners(plan, request.scene);
+    let ids = request.host.features.raster.then(|| append_ids(plan, request, size, &corners));
+    let rays = plan.parameter("camera rays", size_of::<CameraRays>() as u64);
+    let traced = ids
+        .is_none()
+        .then(|| (append_nodes(plan, request.scene), plan.buffer("distances", request.block.count as u64 * 4)));
+    let over = Over::Items { count: request.block.count as u32, work_per_item: if ids.is_some() { 1 } else { 64 } };
+    for (index, buffer) in corners.iter().enumerate() {
+        let sub_scene = plan.parameter(format!("sub-scene {index}"), size_of::<SubScene>() as u64);
+        let label = format!("place receivers {index}");
+        let pass = match (ids, &traced) {
+            (Some(ids), _) => {
+                let why = "puts a receiver where the pixel's ray meets its triangle";
+                plan.compute(label, why, PLACE_ON_TRIANGLES, over).bind("triangle_ids", ids)
+            }
+            (None, Some((nodes, distances))) => {
+                let why = "puts a receiver where the pixel's ray meets a triangle first";
+                plan.compute(label, why, TRACE_CAMERA, over).bind("nodes", nodes[index]).bind("distances", *distances)
+            }
+            (None, None) => unreachable!("receivers are drawn or traced"),
+        };
+        pass.bind("camera_rays", rays)
+            .bind("sub_scene", sub_scene)
+            .bind("corners", *buffer)
+            .bind("receivers", receivers);
+    }
+}
+
+/// Which triangle each pixel sees, drawn where the run begins.
+fn append_ids(plan: &mut Plan, request: &Request<'_>, size: [u32; 2], corners: &[ResourceId]) -> ResourceId {
     let ids = plan.texture("triangle ids", TextureFormat::R32Uint, size, Origin::Persistent);
     if request.opens_run {
         let depth = plan.texture("camera depth", TextureFormat::Depth32Float, size, Origin::Transient);
@@ -154,18 +184,7 @@ fn append_camera(plan: &mut Plan, request: &Request<'_>, size: [u32; 2], receive
             plan.raster(format!("draw triangle ids {index}"), why, raster).bind("camera_clip", clip);
         }
     }
-    let rays = plan.parameter("camera rays", size_of::<CameraRays>() as u64);
-    for (index, buffer) in corners.iter().enumerate() {
-        let sub_scene = plan.parameter(format!("sub-scene {index}"), size_of::<SubScene>() as u64);
-        let over = Over::Items { count: request.block.count as u32, work_per_item: 1 };
-        let why = "puts a receiver where the pixel's ray meets its triangle";
-        plan.compute(format!("place receivers {index}"), why, PLACE_ON_TRIANGLES, over)
-            .bind("camera_rays", rays)
-            .bind("sub_scene", sub_scene)
-            .bind("triangle_ids", ids)
-            .bind("corners", *buffer)
-            .bind("receivers", receivers);
-    }
+    ids
 }
 
 fn append_points(plan: &mut Plan, request: &Request<'_>, receivers: ResourceId) {
@@ -200,7 +219,7 @@ fn camera_values(request: &Request<'_>, camera: &LocalCamera, values: &mut Value
         step_y: f32s(camera.step_y),
         reserved: 0,
     };
-    if request.opens_run {
+    if request.opens_run && request.host.features.raster {
         values.insert("camera clip".into(), bytemuck::bytes_of(&clip).to_vec());
     }
     values.insert("camera rays".into(), bytemuck::bytes_of(&rays).to_vec());

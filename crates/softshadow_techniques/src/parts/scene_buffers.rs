@@ -42,14 +42,20 @@ impl SceneContents {
     }
 }
 
-/// Adds the corners of every sub-scene.
+/// The corners of every sub-scene, added where the plan does not have them yet.
 pub fn append_corners(plan: &mut Plan, scene: &SceneContents) -> Vec<ResourceId> {
-    let add = |(index, content): (usize, &Content)| plan.uploaded(format!("corners {index}"), content);
-    scene.corners.iter().enumerate().map(add).collect()
+    append_once(plan, "corners", &scene.corners)
 }
 
-/// Adds the hierarchy of every sub-scene.
+/// The hierarchy of every sub-scene, added where the plan does not have it yet.
 pub fn append_nodes(plan: &mut Plan, scene: &SceneContents) -> Vec<ResourceId> {
-    let add = |(index, content): (usize, &Content)| plan.uploaded(format!("hierarchy {index}"), content);
-    scene.nodes.iter().enumerate().map(add).collect()
+    append_once(plan, "hierarchy", &scene.nodes)
+}
+
+fn append_once(plan: &mut Plan, name: &str, contents: &[Content]) -> Vec<ResourceId> {
+    let mut add = |(index, content): (usize, &Content)| {
+        let label = format!("{name} {index}");
+        plan.find(&label).unwrap_or_else(|| plan.uploaded(label, content))
+    };
+    contents.iter().enumerate().map(&mut add).collect()
 }

@@ -1,0 +1,297 @@
+//! Runs a program on both engines and finds the first pass after which a buffer differs.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+use softshadow_engine::{AdapterChoice, WgpuEngine};
+use softshadow_native::{NativeEngine, NativeSettings};
+use softshadow_plan::{
+    AdapterInfo, Content, ContentKey, Engine, EngineError, Features, Host, OnStage, Origin, Plan, Program, ResourceId,
+    RunReport, Shape, Stage, StageReport, Step, Timing, Work,
+};
+use softshadow_scene::{Camera, Light, LightShape, LocalScene, Points, Scene, look_at, procedural};
+use softshadow_techniques::parts::occluder_buffers::boundary_of;
+use softshadow_techniques::{
+    OccluderContents, ReceiverSource, SceneContents, Technique, VisibilityProgram, Wants, blocks,
+};
+
+/// Mesa's software driver; there must be one.
+pub(crate) fn device() -> &'static WgpuEngine {
+    static DEVICE: OnceLock<WgpuEngine> = OnceLock::new();
+    DEVICE.get_or_init(|| WgpuEngine::new(AdapterChoice::Software).expect("a software Vulkan driver"))
+}
+
+/// What both engines can do.
+pub(crate) fn host() -> Host {
+    Host { features: Features { raster: false, float32_blendable: false }, ..device().host() }
+}
+
+/// A scene that comes with the library, with its light and a view of it.
+pub(crate) fn shipped(name: &str, size: [u32; 2]) -> (Scene, Light, Source) {
+    let shipped = procedural::shipped(name).unwrap();
+    let (light, camera) = (shipped.light(), shipped.camera());
+    let shape = match light.shape {
+        procedural::LightShape::Rectangle { width, height } => LightShape::Rectangle { width, height },
+        procedural::LightShape::Disc { radius } => LightShape::Disc { radius },
+        procedural::LightShape::Sphere { radius } => LightShape::Sphere { radius },
+        procedural::LightShape::Sun { angular_diameter_deg } => {
+            LightShape::Sun { angular_diameter: angular_diameter_deg.to_radians() }
+        }
+    };
+    let light = Light::new(shape, look_at(light.position, light.target, Some(light.up)).unwrap()).unwrap();
+    let camera = Camera::look_at(camera.eye, camera.target, Some(camera.up), camera.fov_y_deg, size).unwrap();
+    (shipped.build().unwrap(), light, Source::Camera(camera))
+}
+
+/// What a call is made of.
+pub(crate) struct Call {
+    pub(crate) technique: Technique,
+    pub(crate) scene: SceneContents,
+    pub(crate) lights: Vec<Light>,
+    pub(crate) receivers: Source,
+    pub(crate) wants: Wants,
+    /// Receivers of a block at most.
+    pub(crate) block: usize,
+}
+
+/// Where receivers come from.
+pub(crate) enum Source {
+    Camera(Camera),
+    Points(Points),
+}
+
+impl Source {
+    fn as_source(&self) -> ReceiverSource<'_> {
+        match self {
+            Self::Camera(camera) => ReceiverSource::Camera(camera),
+            Self::Points(points) => ReceiverSource::Points(points),
+        }
+    }
+}
+
+/// How the contents of a buffer are compared.
+#[derive(Clone, Copy)]
+pub(crate) enum Same {
+    /// Bit for bit.
+    Bits,
+    /// As float32 within this distance, not-a-numbers alike.
+    Within(f32),
+    /// After both were brought into an order of their own.
+    Sorted(fn(&[u32]) -> Vec<Vec<u32>>),
+    /// Not at all, for this reason.
+    Apart(&'static str),
+}
+
+impl Call {
+    pub(crate) fn new(technique: Technique, scene: &Scene, lights: Vec<Light>, receivers: Source) -> Self {
+        let scene = SceneContents::new(LocalScene::new(scene, None, host().limits.storage_binding_bytes));
+        Self { technique, scene, lights, receivers, wants: Wants::default(), block: 1 << 20 }
+    }
+
+    /// Cuts the scene into parts of so many bytes.
+    pub(crate) fn cut_scene(&mut self, scene: &Scene, bytes: u64) {
+        self.scene = SceneContents::new(LocalScene::new(scene, None, bytes));
+    }
+
+    /// Compares every buffer that a pass writes, after every stage. `same` chooses by the buffer's label.
+    pub(crate) fn compare(&self, same: impl Fn(&str) -> Same) {
+        if let Some(difference) = self.difference(&NativeEngine::new(NativeSettings::default()), None, &same) {
+            panic!("{difference}");
+        }
+    }
+
+    /// Compares what the first passes of the first stage leave.
+    pub(crate) fn compare_first(&self, passes: usize, same: impl Fn(&str) -> Same) {
+        let native = NativeEngine::new(NativeSettings::default());
+        if let Some(difference) = self.difference(&native, Some((0, passes)), &same) {
+            panic!("{difference}");
+        }
+    }
+
+    /// The first difference between the device and another engine, in words; of a program that ends after so many passes of a stage.
+    pub(crate) fn difference(
+        &self,
+        native: &dyn Engine,
+        end: Option<(usize, usize)>,
+        same: &impl Fn(&str) -> Same,
+    ) -> Option<String> {
+        let occluders: Vec<Arc<OccluderContents>> = if self.technique.wants_occluders() {
+            let local = &self.scene.local;
+            let of = |light| Arc::new(OccluderContents::new(local, boundary_of(local, light)).unwrap());
+            self.lights.iter().map(of).collect()
+        } else {
+            Vec::new()
+        };
+        let source = self.receivers.as_source();
+        let textured = self.lights.iter().any(|light| light.texture().is_some());
+        let program = VisibilityProgram {
+            technique: &self.technique,
+            scene: &self.scene,
+            lights: &self.lights,
+            occluders: &occluders,
+            receivers: source,
+            blocks: blocks(source.count(), source.row(), self.technique.halo_rows() as usize, self.block),
+            channels: if textured { 3 } else { 1 },
+            wants: self.wants,
+            host: host(),
+        };
+        program.check().unwrap();
+        let contents = self.scene.contents().chain(occluders.iter().flat_map(|o| o.contents()));
+        let contents: BTreeMap<ContentKey, Content> = contents.map(|c| (c.key, c.clone())).collect();
+        let whole = [outputs(device(), &program, &contents, end), outputs(native, &program, &contents, end)];
+        let stage = (0..whole[0].len()).find(|i| differing(&whole[0][*i], &whole[1][*i], same).is_some())?;
+        let Step::Run(broken) = program.step(stage, &[]) else { unreachable!("it ran") };
+        // Which pass was the first to go astray.
+        let after = |passes| {
+            let [theirs, ours] = [device() as &dyn Engine, native]
+                .map(|engine| outputs(engine, &program, &contents, Some((stage, passes))).remove(stage));
+            differing(&theirs, &ours, same)
+        };
+        let last = end.map_or(broken.plan.passes.len(), |(_, passes)| passes);
+        let first = (1..=last).find_map(|passes| Some((passes, after(passes)?)));
+        let (passes, words) =
+            first.unwrap_or_else(|| (last, differing(&whole[0][stage], &whole[1][stage], same).unwrap_or_default()));
+        Some(format!("stage {stage}, after '{}': {words}", broken.plan.passes[passes - 1].label))
+    }
+}
+
+/// A program whose stages give out every buffer that their passes write; one stage may end early.
+struct Open<'a> {
+    program: &'a dyn Program,
+    cut: Option<(usize, usize)>,
+}
+
+impl Program for Open<'_> {
+    fn step(&self, index: usize, decision: &[u32]) -> Step {
+        let Step::Run(stage) = self.program.step(index, decision) else { return Step::Done };
+        let Stage { mut plan, values } = *stage;
+        match self.cut {
+            Some((stage, _)) if index > stage => return Step::Done,
+            Some((stage, passes)) if index == stage => {
+                plan.passes.truncate(passes);
+                plan.decision = None;
+            }
+            _ => {}
+        }
+        plan.outputs = written(&plan);
+        Step::run(plan, values)
+    }
+}
+
+fn written(plan: &Plan) -> Vec<ResourceId> {
+    let mut found = Vec::new();
+    for pass in &plan.passes {
+        let targets = match &pass.work {
+            Work::Clear { target } | Work::Copy { target, .. } => vec![*target],
+            _ => pass.bindings.iter().map(|(_, id)| *id).collect(),
+        };
+        for id in targets {
+            let resource = &plan.resources[id.index()];
+            let is_made = matches!(resource.origin, Origin::Transient | Origin::Persistent);
+            if is_made && matches!(resource.shape, Shape::Buffer { .. }) && !found.contains(&id) {
+                found.push(id);
+            }
+        }
+    }
+    found
+}
+
+type Buffers = BTreeMap<String, Vec<u32>>;
+
+/// What every stage leaves in its buffers.
+fn outputs(
+    engine: &dyn Engine,
+    program: &dyn Program,
+    contents: &BTreeMap<ContentKey, Content>,
+    cut: Option<(usize, usize)>,
+) -> Vec<Buffers> {
+    let mut found = Vec::new();
+    let mut keep = |stage: Option<StageReport>| {
+        if let Some(stage) = stage {
+            let words = |(label, bytes): (String, Vec<u8>)| (label, bytemuck::pod_collect_to_vec(&bytes));
+            found.push(stage.outputs.into_iter().map(words).collect());
+        }
+        true
+    };
+    engine.run(&Open { program, cut }, contents, Timing::Device, &mut keep).unwrap();
+    found
+}
+
+fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
+    assert!(theirs.keys().eq(ours.keys()), "the same buffers");
+    theirs.iter().find_map(|(label, theirs)| {
+        let ours = &ours[label];
+        let close = |within: f32, a: u32, b: u32| {
+            let (a, b) = (f32::from_bits(a), f32::from_bits(b));
+            a.to_bits() == b.to_bits() || (a - b).abs() <= within || (a.is_nan() && b.is_nan())
+        };
+        match same(label) {
+            Same::Apart(_) => None,
+            Same::Bits => first_of(label, theirs, ours, |a, b| a == b),
+            Same::Within(most) => first_of(label, theirs, ours, |a, b| close(most, a, b)),
+            Same::Sorted(rows) => {
+                let [mut a, mut b] = [rows(theirs), rows(ours)];
+                a.sort();
+                b.sort();
+                let at = (0..a.len().max(b.len())).find(|i| a.get(*i) != b.get(*i))?;
+                Some(format!("'{label}', row {at}: {:?} there, {:?} here", a.get(at), b.get(at)))
+            }
+        }
+    })
+}
+
+fn first_of(label: &str, theirs: &[u32], ours: &[u32], same: impl Fn(u32, u32) -> bool) -> Option<String> {
+    assert_eq!(theirs.len(), ours.len(), "'{label}'");
+    let count = theirs.iter().zip(ours).filter(|(a, b)| !same(**a, **b)).count();
+    let at = theirs.iter().zip(ours).position(|(a, b)| !same(*a, *b))?;
+    let (a, b) = (theirs[at], ours[at]);
+    let floats = [f32::from_bits(a), f32::from_bits(b)];
+    Some(format!(
+        "'{label}', word {at}: {a:#x} there, {b:#x} here ({floats:?} as floats); {count} of {} differ",
+        ours.len()
+    ))
+}
+
+/// An engine of whose first word of one output a bit is turned.
+pub(crate) struct Spoilt<'a> {
+    pub(crate) engine: &'a dyn Engine,
+    pub(crate) label: &'static str,
+}
+
+impl Engine for Spoilt<'_> {
+    fn adapter(&self) -> &AdapterInfo {
+        self.engine.adapter()
+    }
+
+    fn host(&self) -> Host {
+        self.engine.host()
+    }
+
+    fn is_lost(&self) -> bool {
+        self.engine.is_lost()
+    }
+
+    fn destroy(&self) {
+        self.engine.destroy();
+    }
+
+    fn forget(&self, contents: &[ContentKey]) {
+        self.engine.forget(contents);
+    }
+
+    fn run(
+        &self,
+        program: &dyn Program,
+        contents: &BTreeMap<ContentKey, Content>,
+        timing: Timing,
+        on_stage: OnStage<'_>,
+    ) -> Result<RunReport, EngineError> {
+        let mut spoil = |mut stage: Option<StageReport>| {
+            if let Some(bytes) = stage.as_mut().and_then(|stage| stage.outputs.get_mut(self.label)) {
+                bytes[0] ^= 1;
+            }
+            on_stage(stage)
+        };
+        self.engine.run(program, contents, timing, &mut spoil)
+    }
+}

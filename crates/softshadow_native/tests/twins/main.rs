@@ -1,0 +1,4 @@
+//! Twins against their WGSL: the same programs on Mesa's software driver and natively, compared buffer by buffer.
+
+mod harness;
+mod receivers;
