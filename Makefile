@@ -39,13 +39,15 @@ $(VENV)/.made: pyproject.toml
 extension: venv
 	$(BIN)/maturin develop --release --quiet
 
-demo: setup
+demo: extension
 	$(BIN)/python -m softshadow.demo --output demo
 
 test: setup test-rust test-python
 
+# Everything through the software driver; then the truth again on the processor without one.
 test-rust:
-	cargo test --release --workspace --quiet
+	SOFTSHADOW_DEVICE=software cargo test --release --workspace --quiet
+	cargo test --release --package softshadow --test truth --quiet
 
 test-python: extension
 	$(BIN)/python -m pytest -q

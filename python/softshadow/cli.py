@@ -85,7 +85,7 @@ def _add_common(command: argparse.ArgumentParser) -> None:
     command.add_argument("--camera", type=parse_camera, help="default: the scene's own, or all of it in view")
     command.add_argument("--size", type=parse_size, metavar="WxH", help="pixels; default: the camera's own")
     command.add_argument("--technique", type=parse_technique, default="ray-traced", help="name and settings")
-    command.add_argument("--device", default="auto", help="auto, gpu, software, or an index of doctor's")
+    command.add_argument("--device", default="auto", help="auto, gpu, native, software, or an index of doctor's")
     command.add_argument("--info", metavar="FILE", help="write what made the result, as JSON")
     command.add_argument("--json", action="store_true", help="print what made the result, as JSON")
 

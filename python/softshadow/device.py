@@ -2,36 +2,41 @@
 
 from __future__ import annotations
 
-import json
 import os
 import threading
 import warnings
-from typing import Literal
+from typing import Any, Literal
 
 from . import _core
 from .errors import SettingsError, SoftwareAdapterWarning
 
-Device = Literal["auto", "gpu", "software"] | int
+Device = Literal["auto", "gpu", "native", "software"] | int
 
 # Keyed by process: in a forked child the parent's device and lock are of no use.
 _contexts: dict[tuple[int, str], _core.Context] = {}
 _locks: dict[int, threading.Lock] = {}
+# Names of software adapters that were announced.
+_announced: set[str] = set()
 
 
 def context(device: Device | str) -> _core.Context:
-    """The device of this process for a choice; software adapters that nobody asked for are announced once."""
+    """The device of this process for a choice."""
     name = _name(device)
     key = (os.getpid(), name)
     with _locks.setdefault(os.getpid(), threading.Lock()):
-        if key in _contexts:
-            return _contexts[key]
-        made = _contexts[key] = _core.Context(name)
-    adapter = json.loads(made.adapter)
-    if name == "auto" and adapter["device_type"] == "software":
-        text = f"no graphics card was found; computing on the processor with {adapter['name']}"
-        hint = '(device="software" says that this is meant)'
-        warnings.warn(f"{text} {hint}", SoftwareAdapterWarning, stacklevel=3)
-    return made
+        if key not in _contexts:
+            _contexts[key] = _core.Context(name)
+        return _contexts[key]
+
+
+def announce(device: Device | str, adapter: dict[str, Any]) -> None:
+    """Warns once where a software adapter computed that nobody asked for: the technique draws triangles."""
+    asked = _name(device) != "auto" or "SOFTSHADOW_DEVICE" in os.environ
+    if asked or adapter["device_type"] != "software" or adapter["name"] in _announced:
+        return
+    _announced.add(adapter["name"])
+    text = f"no graphics card was found to draw triangles; computing with the software driver {adapter['name']}"
+    warnings.warn(f'{text} (device="software" says that this is meant)', SoftwareAdapterWarning, stacklevel=3)
 
 
 def quiet_driver() -> None:
@@ -44,4 +49,4 @@ def _name(device: object) -> str:
         return device
     if isinstance(device, int) and not isinstance(device, bool) and device >= 0:
         return str(device)
-    raise SettingsError(f"device: 'auto', 'gpu', 'software' or an adapter's index expected, got {device!r}")
+    raise SettingsError(f"device: 'auto', 'gpu', 'native', 'software' or an adapter's index expected, got {device!r}")

@@ -1,4 +1,4 @@
-"""What this machine offers: adapters, their limits, and what to do where there is none."""
+"""What this machine offers: adapters, their limits, the processor, and what is missing."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _core
-from .errors import NoAdapterError
+from .errors import NoAdapterError, SettingsError
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -19,15 +19,18 @@ class Diagnosis:
     version : str
         Of this library.
     adapters : list of dict
-        Every adapter with its name, backend, type, driver and limits; its place here is its index.
+        Every adapter that has a driver with its name, backend, type, driver and limits; its place here is its index.
+    native : dict
+        The processor as ``device="native"`` uses it: threads, and in ``driver`` its vector instructions.
     chosen : str or None
-        The adapter that ``device="auto"`` takes.
+        What ``device="auto"`` takes.
     advice : list of str
         What is missing or slow, and the command that helps.
     """
 
     version: str
     adapters: list[dict[str, Any]]
+    native: dict[str, Any]
     chosen: str | None
     advice: list[str]
 
@@ -40,6 +43,7 @@ class Diagnosis:
         for index, adapter in enumerate(self.adapters):
             lines.append(f"adapter {index}: {adapter['name']}")
             lines += [f"    {name}: {_short(value)}" for name, value in adapter.items() if name != "name"]
+        lines.append(f"native: {_chosen(self.native)}")
         lines.append(f"device='auto' takes: {self.chosen or 'nothing'}")
         return "\n".join(lines + self.advice)
 
@@ -48,15 +52,27 @@ class Diagnosis:
 
 
 def doctor() -> Diagnosis:
-    """Looks at every adapter of the machine; nothing is computed and nothing is raised for want of one."""
+    """Looks at every adapter of the machine; nothing is computed and nothing is raised."""
     adapters = json.loads(_core.adapters())
+    native = json.loads(_core.Context("native").adapter)
     try:
-        chosen = json.loads(_core.Context("auto").adapter)
-    except NoAdapterError as error:
-        return Diagnosis(version=_core.__version__, adapters=adapters, chosen=None, advice=[str(error)])
-    slow = "only a software adapter: correct, and much slower than a graphics card"
-    advice = [slow] if chosen["device_type"] == "software" else []
-    return Diagnosis(version=_core.__version__, adapters=adapters, chosen=chosen["name"], advice=advice)
+        chosen, advice = _chosen(json.loads(_core.Context("auto").adapter)), []
+    except (NoAdapterError, SettingsError) as error:
+        chosen, advice = None, [str(error)]
+    if not adapters:
+        advice.append(_NO_DRIVER)
+    return Diagnosis(version=_core.__version__, adapters=adapters, native=native, chosen=chosen, advice=advice)
+
+
+_NO_DRIVER = (
+    "no graphics driver: everything runs natively on the processor, but what draws triangles (hard_shadow_map, "
+    "depth_complexity with evaluation='blended'). On Debian or Ubuntu a software driver for those is installed by "
+    "`apt-get install -y mesa-vulkan-drivers libvulkan1`"
+)
+
+
+def _chosen(adapter: dict[str, Any]) -> str:
+    return f"{adapter['name']} ({adapter['backend']}, {adapter['driver']})"
 
 
 def _short(value: object) -> str:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .camera import Camera
 from .checks import choice, color, memory_limit_bytes, real
-from .device import Device, context
+from .device import Device, announce, context
 from .errors import SettingsError
 from .files import png_or_npy, write
 from .lights import Light, built_lights
@@ -126,8 +126,10 @@ def render(
         memory_limit=memory_limit_bytes(memory_limit),
         progress=callback(progress),
     )
+    seen = shaped(arrays["visibility"], (len(built),) if several else (), where.shape)
+    announce(device, seen.info["adapter"])
     return Picture(
         linear=arrays["linear"].reshape(*where.shape, 3),
         srgb=arrays["srgb"].reshape(*where.shape, 3),
-        visibility=shaped(arrays["visibility"], (len(built),) if several else (), where.shape),
+        visibility=seen,
     )

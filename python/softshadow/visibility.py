@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .camera import Camera
 from .checks import floats, memory_limit_bytes
-from .device import Device, context
+from .device import Device, announce, context
 from .errors import SceneError, SettingsError
 from .files import png_or_npy, write
 from .lights import Light, built_lights
@@ -120,8 +120,10 @@ def visibility(
         is never visible from behind.
     technique : RayTraced, DepthComplexity or HardShadowMap
         How it is computed.
-    device : {"auto", "gpu", "software"} or int
-        ``"auto"`` takes a graphics card, else a software adapter; a number is an index in :func:`doctor`.
+    device : {"auto", "gpu", "native", "software"} or int
+        ``"auto"`` takes a graphics card, else the processor without any driver (``"native"``), and then a software driver for
+        what draws triangles; the environment variable ``SOFTSHADOW_DEVICE`` overrides it. A number is an index in
+        :func:`doctor`.
     memory_limit : int, optional
         Bytes of device memory for one block of receivers.
     progress : callable, optional
@@ -166,7 +168,9 @@ def visibility(
         sample_masks=bool(sample_masks),
         progress=callback(progress),
     )
-    return shaped(arrays, (len(built),) if several else (), where.shape)
+    result = shaped(arrays, (len(built),) if several else (), where.shape)
+    announce(device, result.info["adapter"])
+    return result
 
 
 @dataclass(frozen=True)

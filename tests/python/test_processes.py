@@ -131,17 +131,35 @@ def test_a_software_adapter_that_nobody_asked_for_is_announced_once():
     script = """
 import warnings
 import softshadow as ss
+fork = ss.scenes.load("fork")
+rays, drawn = ss.RayTraced(samples=1), ss.HardShadowMap()
 with warnings.catch_warnings(record=True) as caught:
     warnings.simplefilter("always")
-    for device in ("software", "auto", "auto"):
-        ss.visibility(ss.Scene(), ss.SunLight(0, 45), points=[[0, 0, 0]], device=device)
-        print(len(caught))
+    for technique, device in ((drawn, "software"), (rays, "auto"), (drawn, "auto"), (drawn, "auto")):
+        result = ss.visibility(fork.scene, fork.light, points=[[0, 0, 0]], technique=technique, device=device)
+        print(len(caught), result.info["adapter"]["device_type"], len(result.info["notes"]))
 assert issubclass(caught[0].category, ss.SoftwareAdapterWarning)
 assert "no graphics card" in str(caught[0].message)
 assert caught[0].filename == "<string>"
 """
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True)
-    assert done.stdout.split() == ["0", "1", "1"]
+    environment = {name: value for name, value in os.environ.items() if name != "SOFTSHADOW_DEVICE"}
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True, env=environment)
+    assert done.stdout.split("\n")[:-1] == ["0 software 0", "0 native 0", "1 software 1", "1 software 1"]
+
+
+def test_the_environment_chooses_the_device():
+    script = "import softshadow as ss; print(ss.visibility(ss.Scene(), ss.SunLight(0, 45), points=[[0, 0, 0]]).info)"
+
+    def run(device: str) -> subprocess.CompletedProcess[str]:
+        environment = {**os.environ, "SOFTSHADOW_DEVICE": device}
+        return subprocess.run(
+            [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, env=environment
+        )
+
+    assert "'device_type': 'native'" in run("native").stdout
+    assert "'device_type': 'software'" in run("software").stdout
+    assert "SOFTSHADOW_DEVICE: device 'toaster'" in run("toaster").stderr
 
 
 def test_importing_needs_numpy_alone():

@@ -1,13 +1,14 @@
 //! An open device and what is kept for it: the engine, and the scenes of the last calls as the device reads them.
 
 use std::str::FromStr;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Instant;
 
 use softshadow_engine::{AdapterChoice, WgpuEngine};
+use softshadow_native::{NativeEngine, NativeSettings};
 use softshadow_plan::{AdapterInfo, DeviceKind, Engine};
 use softshadow_scene::{Light, Receivers, Scene};
-use softshadow_techniques::{OccluderContents, SceneContents};
+use softshadow_techniques::{OccluderContents, SceneContents, Technique};
 
 use crate::error::Error;
 use crate::info::Preparation;
@@ -16,16 +17,22 @@ use crate::scene_cache::SceneCache;
 /// Which device computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DeviceChoice {
-    /// A GPU, else a software driver on the CPU.
+    /// What the environment variable `SOFTSHADOW_DEVICE` says, in the words of [`DeviceChoice::from_str`]; where it says nothing, a GPU,
+    /// else the CPU without a driver. What that does not have, because it draws triangles, a software driver then does.
     #[default]
     Auto,
     /// A GPU.
     Gpu,
+    /// Threads of the CPU, without any driver.
+    Native,
     /// A software driver on the CPU.
     Software,
     /// The adapter with this position in [`adapters`].
     Index(usize),
 }
+
+/// Overrides [`DeviceChoice::Auto`].
+const DEVICE_VARIABLE: &str = "SOFTSHADOW_DEVICE";
 
 impl FromStr for DeviceChoice {
     type Err = Error;
@@ -34,26 +41,97 @@ impl FromStr for DeviceChoice {
         match text {
             "auto" => Ok(Self::Auto),
             "gpu" => Ok(Self::Gpu),
+            "native" => Ok(Self::Native),
             "software" => Ok(Self::Software),
             _ => text.parse().map(Self::Index).map_err(|_| {
-                Error::Settings(format!("device '{text}' is none of 'auto', 'gpu', 'software' or an adapter's index"))
+                let known = "'auto', 'gpu', 'native', 'software' or an adapter's index";
+                Error::Settings(format!("device '{text}' is none of {known}"))
             }),
         }
     }
 }
 
-/// Every adapter of this machine.
+/// Every adapter of this machine that has a driver.
 #[must_use]
 pub fn adapters() -> Vec<AdapterInfo> {
     softshadow_engine::adapters()
 }
 
-/// A device and its caches. Calls from several threads take turns.
+/// Devices and their caches. Calls from several threads take turns.
 pub struct Context {
-    choice: AdapterChoice,
+    main: Device,
+    /// Draws triangles where the main device does not: opened when a technique first needs it.
+    drawing: OnceLock<Device>,
+    /// Whether [`Context::drawing`] may be opened.
+    is_automatic: bool,
+}
+
+impl Context {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// [`Error::Device`] says how to install one where there is none.
+    pub fn new(choice: &DeviceChoice) -> Result<Self, Error> {
+        let choice = match (choice, std::env::var(DEVICE_VARIABLE)) {
+            (DeviceChoice::Auto, Ok(text)) => {
+                text.parse().map_err(|error| Error::Settings(format!("{DEVICE_VARIABLE}: {error}")))?
+            }
+            _ => *choice,
+        };
+        let main = match choice {
+            DeviceChoice::Auto => match Device::open(Opening::Adapter(AdapterChoice::ReadyGpu)) {
+                Err(Error::Device(_)) => Device::open(Opening::Native)?,
+                found => found?,
+            },
+            DeviceChoice::Gpu => Device::open(Opening::Adapter(AdapterChoice::Gpu))?,
+            DeviceChoice::Native => Device::open(Opening::Native)?,
+            DeviceChoice::Software => Device::open(Opening::Adapter(AdapterChoice::Software))?,
+            DeviceChoice::Index(index) => Device::open(Opening::Adapter(AdapterChoice::Index(index)))?,
+        };
+        Ok(Self { main, drawing: OnceLock::new(), is_automatic: choice == DeviceChoice::Auto })
+    }
+
+    /// What the device is.
+    #[must_use]
+    pub fn adapter(&self) -> &AdapterInfo {
+        &self.main.adapter
+    }
+
+    /// Destroys the device as a failing driver would, for tests of what follows.
+    pub fn lose_device(&self) {
+        lock(&self.main.engine).destroy();
+    }
+
+    /// The device that can serve a technique.
+    pub(crate) fn device(&self, technique: &Technique) -> Result<&Device, Error> {
+        let is_served = !technique.draws() || self.main.engine()?.host().features.raster;
+        if is_served || !self.is_automatic {
+            return Ok(&self.main);
+        }
+        if let Some(device) = self.drawing.get() {
+            return Ok(device);
+        }
+        let opened = Device::open(Opening::Adapter(AdapterChoice::Software))
+            .map_err(|error| Error::Device(format!("{} draws triangles: {error}", technique.name())))?;
+        Ok(self.drawing.get_or_init(|| Device { is_stand_in: true, ..opened }))
+    }
+}
+
+/// How a device is opened, and opened again where it was lost.
+#[derive(Clone, Copy)]
+enum Opening {
+    Adapter(AdapterChoice),
+    Native,
+}
+
+/// A device, and what is kept for it.
+pub(crate) struct Device {
+    opening: Opening,
     adapter: AdapterInfo,
     engine: Mutex<Arc<dyn Engine>>,
     scenes: Mutex<SceneCache>,
+    /// Whether it does what the main device does not.
+    is_stand_in: bool,
 }
 
 /// A scene and what hides each light of a call, as the device reads them.
@@ -64,44 +142,34 @@ pub(crate) struct Prepared {
     pub(crate) preparation: Preparation,
 }
 
-impl Context {
-    /// Opens a device.
-    ///
-    /// # Errors
-    /// [`Error::Device`] says how to install one where there is none.
-    pub fn new(choice: &DeviceChoice) -> Result<Self, Error> {
-        let choice = match *choice {
-            DeviceChoice::Auto => AdapterChoice::Auto,
-            DeviceChoice::Gpu => AdapterChoice::Gpu,
-            DeviceChoice::Software => AdapterChoice::Software,
-            DeviceChoice::Index(index) => AdapterChoice::Index(index),
-        };
-        let engine = WgpuEngine::new(choice)?;
+impl Device {
+    fn open(opening: Opening) -> Result<Self, Error> {
+        let engine = engine(opening)?;
         let adapter = engine.adapter().clone();
         if adapter.device_type == DeviceKind::Software {
             log::warn!("'{}' is a software adapter: everything runs on the CPU", adapter.name);
         }
-        Ok(Self { choice, adapter, engine: Mutex::new(Arc::new(engine)), scenes: Mutex::default() })
+        Ok(Self { opening, adapter, engine: Mutex::new(engine), scenes: Mutex::default(), is_stand_in: false })
     }
 
     /// What the device is.
-    #[must_use]
-    pub fn adapter(&self) -> &AdapterInfo {
+    pub(crate) fn adapter(&self) -> &AdapterInfo {
         &self.adapter
     }
 
-    /// Destroys the device as a failing driver would, for tests of what follows.
-    pub fn lose_device(&self) {
-        lock(&self.engine).destroy();
+    /// A note where this is not the device that the caller has.
+    pub(crate) fn stands_in(&self) -> Option<String> {
+        let name = &self.adapter.name;
+        self.is_stand_in.then(|| format!("computed by '{name}': the native engine draws no triangles"))
     }
 
     /// The engine; opened again where the device was lost.
     pub(crate) fn engine(&self) -> Result<Arc<dyn Engine>, Error> {
-        let mut engine = lock(&self.engine);
-        if engine.is_lost() {
-            *engine = Arc::new(WgpuEngine::new(self.choice)?);
+        let mut kept = lock(&self.engine);
+        if kept.is_lost() {
+            *kept = engine(self.opening)?;
         }
-        Ok(Arc::clone(&engine))
+        Ok(Arc::clone(&kept))
     }
 
     /// The scene as the device reads it, and with `lights` what hides each: from the cache where it was used lately, from an earlier
@@ -127,6 +195,13 @@ impl Context {
         }
         Ok(Prepared { contents, occluders: occluders?, preparation })
     }
+}
+
+fn engine(opening: Opening) -> Result<Arc<dyn Engine>, Error> {
+    Ok(match opening {
+        Opening::Adapter(choice) => Arc::new(WgpuEngine::new(choice)?),
+        Opening::Native => Arc::new(NativeEngine::new(NativeSettings::default())),
+    })
 }
 
 fn points_bounds(points: &[[f64; 3]]) -> Option<([f64; 3], [f64; 3])> {
@@ -157,7 +232,7 @@ mod tests {
             |red: f32| light.clone().with_texture(LightTexture::new(1, 1, vec![[red, 0.0, 0.0]]).unwrap()).unwrap();
         let context = Context::new(&DeviceChoice::Auto).unwrap();
         let receivers = Receivers::Points(softshadow_scene::Points::new(vec![[0.0, 0.0, -1.0]], None).unwrap());
-        let prepare = |light| context.prepare(&scene, &receivers, &[light]).unwrap();
+        let prepare = |light| context.main.prepare(&scene, &receivers, &[light]).unwrap();
         let occluders = |light| prepare(light).occluders.remove(0);
         let (scene_then, then) = (prepare(frame(1.0)).contents, occluders(frame(1.0)));
         assert!(Arc::ptr_eq(&scene_then, &prepare(frame(0.5)).contents));

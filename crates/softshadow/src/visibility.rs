@@ -17,7 +17,7 @@ use softshadow_techniques::{
 };
 
 use crate::Progress;
-use crate::context::{Context, Prepared};
+use crate::context::{Context, Device, Prepared};
 use crate::error::Error;
 use crate::info::{Info, Preparation, notes};
 
@@ -140,7 +140,8 @@ pub(crate) fn run(
     if lights.is_empty() {
         return Err(Error::Settings("at least one light is needed".into()));
     }
-    let engine = context.engine()?;
+    let device = context.device(technique)?;
+    let engine = device.engine()?;
     let host = engine.host();
     technique.check_call(source, lights, &host)?;
     if let Receivers::Camera(camera) = receivers {
@@ -151,10 +152,10 @@ pub(crate) fn run(
     }
     let wants_occluders = technique.wants_occluders() && receivers.count() > 0;
     let hidden: &[Light] = if wants_occluders { lights } else { &[] };
-    let Prepared { contents, occluders, preparation } = context.prepare(scene, receivers, hidden)?;
+    let Prepared { contents, occluders, preparation } = device.prepare(scene, receivers, hidden)?;
     technique.check_scene(&contents)?;
     let channels = if lights.iter().any(|l| l.texture().is_some()) { 3 } else { 1 };
-    let mut collector = Collector::new(context, scene, lights, receivers, technique, options, &contents, channels);
+    let mut collector = Collector::new(device, scene, lights, receivers, technique, options, &contents, channels);
     collector.result.info.preparation = preparation;
     let sees_nothing = matches!(receivers, Receivers::Camera(_)) && contents.local.sub_scenes.is_empty();
     if receivers.count() == 0 || sees_nothing {
@@ -296,7 +297,7 @@ struct Collector<'a> {
 impl<'a> Collector<'a> {
     #[expect(clippy::too_many_arguments, reason = "everything that a result reports")]
     fn new(
-        context: &Context,
+        device: &Device,
         scene: &Scene,
         lights: &[Light],
         receivers: &Receivers,
@@ -314,7 +315,7 @@ impl<'a> Collector<'a> {
         };
         let has_error = sampled.is_some();
         let info = Info {
-            adapter: context.adapter().clone(),
+            adapter: device.adapter().clone(),
             technique: technique.clone(),
             lights: lights.len(),
             receivers: count,
@@ -335,7 +336,7 @@ impl<'a> Collector<'a> {
             zero_area_triangles: contents.local.dropped.zero_area,
             unresolved_triangles: contents.local.dropped.below_resolution,
             invisible_triangles: contents.local.dropped.invisible,
-            notes: notes(scene, technique, &contents.local),
+            notes: notes(scene, technique, &contents.local).into_iter().chain(device.stands_in()).collect(),
             error_kind: if has_error { "statistical" } else { "none" },
             standard_error: None,
             plan: String::new(),

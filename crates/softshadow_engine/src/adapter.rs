@@ -7,9 +7,9 @@ use softshadow_plan::{AdapterInfo, DeviceKind, EngineError, Features, Host, Limi
 /// Which adapter to take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AdapterChoice {
-    /// A GPU, else a software driver.
-    Auto,
-    /// A GPU.
+    /// A GPU; behind GL only where nothing else answers at all: opening that is slow and noisy.
+    ReadyGpu,
+    /// A GPU, behind whatever interface.
     Gpu,
     /// A software driver.
     Software,
@@ -74,10 +74,7 @@ pub(crate) fn open(choice: AdapterChoice) -> Result<Opened, EngineError> {
     let kinds: Vec<DeviceKind> = found.iter().map(|a| kind(&a.get_info())).collect();
     let first = |wanted| kinds.iter().position(|k| *k == wanted);
     let (index, wanted) = match choice {
-        AdapterChoice::Auto => {
-            (first(DeviceKind::Gpu).or_else(|| first(DeviceKind::Software)), "GPU or software".into())
-        }
-        AdapterChoice::Gpu => (first(DeviceKind::Gpu), "GPU".into()),
+        AdapterChoice::ReadyGpu | AdapterChoice::Gpu => (first(DeviceKind::Gpu), "GPU".into()),
         AdapterChoice::Software => (first(DeviceKind::Software), "software".into()),
         AdapterChoice::Index(index) => ((index < found.len()).then_some(index), format!("number {index}")),
         AdapterChoice::Noop => (first(DeviceKind::Noop), "noop".into()),

@@ -98,6 +98,16 @@ impl Technique {
         }
     }
 
+    /// Whether it needs a host that draws triangles.
+    #[must_use]
+    pub fn draws(&self) -> bool {
+        match self {
+            Self::RayTraced(_) => false,
+            Self::HardShadowMap(_) => true,
+            Self::DepthComplexity(settings) => settings.evaluation == depth_complexity::Evaluation::Blended,
+        }
+    }
+
     /// Checks whether the settings can serve such receivers and lights on such a host.
     ///
     /// # Errors
@@ -109,6 +119,10 @@ impl Technique {
         host: &Host,
     ) -> Result<(), TechniqueError> {
         spread::check_receivers(self.name(), self.interleaves(), receivers)?;
+        if self.draws() && !host.features.raster {
+            let reason = "it draws triangles, which this one does not; use 'gpu' or 'software'".to_owned();
+            return Err(TechniqueError::Setting { technique: self.name(), setting: "device", reason });
+        }
         match self {
             Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),

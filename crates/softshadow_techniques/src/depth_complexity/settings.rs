@@ -220,9 +220,6 @@ impl DepthComplexity {
             Evaluation::Blended if !is_camera => {
                 fail("evaluation", "'blended' draws over a camera's image and knows no points; use 'tiled'")
             }
-            Evaluation::Blended if !host.features.raster => {
-                fail("evaluation", "'blended' draws triangles, which this device cannot; use 'tiled'")
-            }
             Evaluation::Blended if self.counters == Counters::Float && !host.features.float32_blendable => fail(
                 "counters",
                 "'float' needs float32-blendable, which this device lacks; use 'words', or evaluation 'tiled'",
