@@ -121,8 +121,8 @@ def visibility(
     technique : RayTraced, DepthComplexity or HardShadowMap
         How it is computed.
     device : {"auto", "gpu", "native", "software"} or int
-        ``"auto"`` takes a graphics card, else the processor without any driver (``"native"``), and then a software driver for
-        what draws triangles; the environment variable ``SOFTSHADOW_DEVICE`` overrides it. A number is an index in
+        ``"auto"`` takes a graphics card, else the processor without any driver (``"native"``), and a software driver
+        for what draws triangles; the environment variable ``SOFTSHADOW_DEVICE`` overrides it. A number is an index in
         :func:`doctor`.
     memory_limit : int, optional
         Bytes of device memory for one block of receivers.

@@ -16,6 +16,7 @@ import pytest
 import softshadow as ss
 from conftest import camera_above, light_above, visibility
 
+DEVICES = pytest.mark.parametrize("device", ["software", "native"])
 BUSY = {"camera": camera_above((64, 64)), "technique": ss.RayTraced(samples=256)}
 
 
@@ -45,39 +46,42 @@ def test_other_threads_run_while_a_call_computes():
     assert seen[0] > 3
 
 
-def test_threads_share_a_scene_and_a_device(scene):
-    expected = visibility(scene, light_above(), **BUSY).values
+@DEVICES
+def test_threads_share_a_scene_and_a_device(scene, device):
+    expected = visibility(scene, light_above(), device=device, **BUSY).values
     with ThreadPoolExecutor(4) as pool:
-        results = list(pool.map(lambda _: visibility(scene, light_above(), **BUSY).values, range(8)))
+        results = list(pool.map(lambda _: visibility(scene, light_above(), device=device, **BUSY).values, range(8)))
     for values in results:
         np.testing.assert_array_equal(values, expected)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
 @pytest.mark.parametrize("new_scene", [False, True])
-def test_a_forked_child_computes(scene, new_scene):
-    expected = visibility(scene, light_above(), **BUSY).values
+@DEVICES
+def test_a_forked_child_computes(scene, new_scene, device):
+    expected = visibility(scene, light_above(), device=device, **BUSY).values
     child = os.fork()
     if child == 0:
         code = 1
         try:
             signal.alarm(20)
             again = ss.Scene(scene.meshes) if new_scene else scene
-            values = visibility(again, light_above(), **BUSY).values
+            values = visibility(again, light_above(), device=device, **BUSY).values
             code = 0 if np.array_equal(values, expected, equal_nan=True) else 2
         finally:
             os._exit(code)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-    np.testing.assert_array_equal(visibility(scene, light_above(), **BUSY).values, expected)
+    np.testing.assert_array_equal(visibility(scene, light_above(), device=device, **BUSY).values, expected)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
-def test_a_forked_child_ends_although_the_device_was_its_parents():
-    script = """
+@DEVICES
+def test_a_forked_child_ends_although_the_device_was_its_parents(device):
+    script = f"""
 import os, signal, sys
 import softshadow as ss
 fork = ss.scenes.load("fork")
-ss.visibility(fork.scene, fork.light, points=[[0, 0, 0]], device="software")
+ss.visibility(fork.scene, fork.light, points=[[0, 0, 0]], device="{device}")
 child = os.fork()
 if child == 0:
     signal.alarm(30)
