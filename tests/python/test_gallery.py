@@ -49,6 +49,7 @@ def test_pictures_and_page(name, tmp_path):
     assert len(list(tmp_path.iterdir())) == len(shown.panels)
     assert shown.look in page
     assert all(note in page for note in shown.notes)
+    assert "nan" not in page
 
 
 def test_standard_silhouettes_miss_the_penumbra():

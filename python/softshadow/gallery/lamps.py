@@ -18,6 +18,7 @@ from . import colors, props
 from .exhibit import Exhibit, Panel
 from .studio import Studio, View, difference
 
+_KNOWN = "The references' own standard errors in the penumbra are up to {:.4f}."
 _LIGHT_HEIGHT, _PLATE_HEIGHT = 4.0, 1.6
 
 
@@ -25,17 +26,19 @@ def shapes(studio: Studio) -> Exhibit:
     """Under a plate with holes, each a pinhole camera, and lights of one area."""
     scene = Scene([props.floor(12), _plate_with_holes()])
     camera = Camera.look_at(eye=(0.1, 1.55, 1.3), target=(0.1, 0, 0), fov_y_deg=60, size=studio.size)
-    panels = []
+    panels, known = [], []
     for name, caption, light in _lights_above(_LIGHT_HEIGHT, area=0.5):
         view = View(scene=scene, light=light, camera=camera, exposure=1.5, shading="modulated")
         truth = studio.reference(view, share=2)
         panels.append(studio.panel(name, caption, view, DepthComplexity(samples=256), truth))
+        known.append(truth.standard_error)
     return Exhibit(
         name="shapes",
         title="Shapes of lights",
         look="Three square holes in a plate over the floor: the smaller the hole, the more it draws the light, a star "
         "upside down, instead of itself.",
         panels=tuple(panels),
+        notes=(_KNOWN.format(max(known)),),
     )
 
 
@@ -63,11 +66,13 @@ def textures(studio: Studio) -> Exhibit:
         Panel(name=f"{name}_texture", caption=f"the light: {captions[name]}", image=_shown(texture, studio.size))
         for name, texture in sources.items()
     ]
-    shots = []
+    shots, known = [], []
     for name, texture in sources.items():
         # Most of a fire is dark, and two thirds of coloured glass.
         lit = replace(view, light=replace(light, texture=texture), exposure=3.0)
-        shots.append(studio.panel(name, captions[name], lit, DepthComplexity(samples=256), studio.reference(lit)))
+        truth = studio.reference(lit)
+        known.append(truth.standard_error)
+        shots.append(studio.panel(name, captions[name], lit, DepthComplexity(samples=256), truth))
     white = studio.panel("white", "the same light in white", view, DepthComplexity(samples=256))
     return Exhibit(
         name="textures",
@@ -75,6 +80,7 @@ def textures(studio: Studio) -> Exhibit:
         look="A post that hides the red pane leaves green and blue: shadows take the colours of what is still seen, "
         "and those of a fire sway with it.",
         panels=(*lamps, *shots, white, difference(shots[2], shots[1], 0.5)),
+        notes=(_KNOWN.format(max(known)),),
     )
 
 

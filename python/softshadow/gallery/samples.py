@@ -14,7 +14,7 @@ from .studio import Studio, View, difference
 
 
 def silhouettes(studio: Studio) -> Exhibit:
-    """The paper's figure 4."""
+    """After the paper's figure 4; but `standard` selects edges alone, and the receiver says how they count."""
     light = RectLight(
         width=2.4,
         height=2.4,

@@ -14,6 +14,7 @@ from softshadow.lights import Light
 from softshadow.picture import Picture, render
 from softshadow.scene import Scene
 from softshadow.techniques import RayTraced, Technique
+from softshadow.visibility import visibility
 
 from . import colors
 from .exhibit import Panel
@@ -22,6 +23,8 @@ from .exhibit import Panel
 _UMBRA_LIMIT = 0.002
 # Kernels are compiled and scenes prepared on a picture of this size at most, which is not timed.
 _WARM_UP = (48, 36)
+# A standard error is a mean over many pixels, and a few of them tell it.
+_COARSER = 4
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,7 +93,7 @@ class Studio:
         """Many shadow rays a receiver; `share` divides their number where they are slow."""
         rays = RayTraced(samples=max(self.reference_samples // share, 1), pattern="low_discrepancy", seed=1)
         picture = self.picture(view, rays)
-        values, error = picture.visibility.values, picture.visibility.standard_error
+        values = picture.visibility.values
         panel = Panel(
             name="reference",
             caption=f"reference: {rays.samples} rays",
@@ -98,10 +101,18 @@ class Studio:
             values=values,
             ms=picture.info["wall_ms"],
         )
-        with np.errstate(invalid="ignore"):
-            penumbra = (values > _UMBRA_LIMIT) & (values < 1 - _UMBRA_LIMIT)
-        known = math.nan if error is None or not penumbra.any() else float(error[penumbra].mean())
-        return Reference(panel=panel, visibility=values, penumbra=penumbra, standard_error=known)
+        known = self._standard_error(view, rays)
+        return Reference(panel=panel, visibility=values, penumbra=_penumbra(values), standard_error=known)
+
+    def _standard_error(self, view: View, technique: Technique) -> float:
+        """Mean over the penumbra. Pictures do not know it, and visibility at a part of their size does."""
+        size = max(self.size[0] // _COARSER, 1), max(self.size[1] // _COARSER, 1)
+        coarse = visibility(
+            view.scene, view.light, camera=replace(view.camera, size=size), technique=technique, device=self.device
+        )
+        penumbra = _penumbra(coarse.values)
+        assert coarse.standard_error is not None
+        return float(coarse.standard_error[penumbra].mean()) if penumbra.any() else math.nan
 
 
 def difference(panel: Panel, other: Panel, limit: float) -> Panel:
@@ -117,6 +128,11 @@ def difference(panel: Panel, other: Panel, limit: float) -> Panel:
         image=colors.signed(errors / limit),
         values=errors,
     )
+
+
+def _penumbra(values: NDArray[np.float32]) -> NDArray[np.bool_]:
+    with np.errstate(invalid="ignore"):
+        return np.asarray((values > _UMBRA_LIMIT) & (values < 1 - _UMBRA_LIMIT))
 
 
 def _rmse(errors: NDArray[np.float32], penumbra: NDArray[np.bool_]) -> float:
