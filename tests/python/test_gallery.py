@@ -12,7 +12,7 @@ from softshadow import gallery
 from softshadow.gallery import Exhibit, Panel, Studio, colors
 
 SIZE = (48, 36)
-STUDIO = Studio(size=SIZE, reference_samples=64, device="software")
+STUDIO = Studio(size=SIZE, reference_samples=256, device="software")
 BY_NAME = {make.__name__: make for make in gallery.EXHIBITS}
 
 

@@ -23,6 +23,8 @@ from .exhibit import Panel
 _UMBRA_LIMIT = 0.002
 # Kernels are compiled and scenes prepared on a picture of this size at most, which is not timed.
 _WARM_UP = (48, 36)
+# Independent sets of samples tell their standard error; of a single one it can only be guessed, far too large.
+_PASSES = 4
 # A standard error is a mean over many pixels, and a few of them tell it.
 _COARSER = 4
 
@@ -91,12 +93,13 @@ class Studio:
 
     def reference(self, view: View, share: int = 1) -> Reference:
         """Many shadow rays a receiver; `share` divides their number where they are slow."""
-        rays = RayTraced(samples=max(self.reference_samples // share, 1), pattern="low_discrepancy", seed=1)
+        each = max(self.reference_samples // (share * _PASSES), 1)
+        rays = RayTraced(samples=each, passes=_PASSES, pattern="low_discrepancy", seed=1)
         picture = self.picture(view, rays)
         values = picture.visibility.values
         panel = Panel(
             name="reference",
-            caption=f"reference: {rays.samples} rays",
+            caption=f"reference: {each * _PASSES} rays",
             image=picture.srgb,
             values=values,
             ms=picture.info["wall_ms"],
