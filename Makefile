@@ -7,10 +7,11 @@ BIN := $(VENV)/bin
 # Mesa's device-selection layer complains on stderr where there is no desktop session; the library chooses the device itself.
 export VK_LOADER_LAYERS_DISABLE := VK_LAYER_MESA_device_select
 
-.PHONY: help setup driver venv extension demo test test-rust test-python lint bench evidence clean
+.PHONY: help setup driver venv extension demo gallery test test-rust test-python lint bench evidence clean
 
 help:
 	@echo "make demo      render the demonstration scene; says where the picture and the numbers are"
+	@echo "make gallery   pictures side by side of what the techniques do, with numbers, in about a minute; demo/gallery/index.md"
 	@echo "make test      all tests, Rust and Python"
 	@echo "make lint      formatting, clippy, ruff, mypy, stubs"
 	@echo "make bench     time, bytes and error of the techniques, and the papers' ratios, in a few minutes"
@@ -41,6 +42,9 @@ extension: venv
 
 demo: extension
 	$(BIN)/python -m softshadow.demo --output demo
+
+gallery: setup
+	$(BIN)/python -m softshadow.gallery --output demo/gallery
 
 test: setup test-rust test-python
 

@@ -1,0 +1,142 @@
+"""Every exhibit at the size of a stamp: its pictures are there, and show what it says."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+
+from conftest import read_png
+from softshadow import gallery
+from softshadow.gallery import Exhibit, Panel, Studio, colors
+
+SIZE = (48, 36)
+STUDIO = Studio(size=SIZE, reference_samples=256, device="software")
+BY_NAME = {make.__name__: make for make in gallery.EXHIBITS}
+
+
+@functools.cache
+def exhibit(name: str) -> Exhibit:
+    return BY_NAME[name](STUDIO)
+
+
+def values(name: str, panel: str) -> np.ndarray:
+    found = exhibit(name)[panel].values
+    assert found is not None
+    return found
+
+
+def error(name: str, panel: str) -> float:
+    found = exhibit(name)[panel].rmse
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("name", BY_NAME)
+def test_pictures_and_page(name, tmp_path):
+    shown = exhibit(name)
+    assert shown.name == name
+    assert len({panel.name for panel in shown.panels}) == len(shown.panels)
+    shown.save(tmp_path)
+    page = shown.page()
+    for panel in shown.panels:
+        picture = read_png(tmp_path / shown.file(panel))
+        np.testing.assert_array_equal(picture, panel.image)
+        assert picture.shape == (*SIZE[::-1], 3)
+        assert f"![{panel.caption}]({shown.file(panel)})" in page
+        assert panel.ms is None or panel.numbers in page
+    assert len(list(tmp_path.iterdir())) == len(shown.panels)
+    assert shown.look in page
+    assert all(note in page for note in shown.notes)
+    assert "nan" not in page
+
+
+def test_standard_silhouettes_miss_the_penumbra():
+    assert error("silhouettes", "accurate") < 0.05
+    assert error("silhouettes", "standard") > 3 * error("silhouettes", "accurate")
+    standard, truth = values("silhouettes", "standard"), values("silhouettes", "reference")
+    soft = [np.count_nonzero((v > 0.1) & (v < 0.9)) for v in (standard, truth)]
+    assert soft[0] < soft[1] / 2
+
+
+def test_more_samples_err_less_and_averages_leave_the_steps():
+    errors = {name: error("spreads", name) for name in ("correlated_16", "decorrelated_16", "correlated_64")}
+    assert errors["correlated_64"] < 0.7 * min(errors["correlated_16"], errors["decorrelated_16"])
+    # Sets of sixteen know seventeen values; only averages fall between them.
+    for name, steps in (("correlated_16", True), ("decorrelated_16", True), ("interleaved_16", False)):
+        sixteenths = 16 * values("spreads", name)
+        assert np.array_equal(sixteenths, sixteenths.round(), equal_nan=True) == steps
+
+
+def test_textures_make_colour():
+    def colourfulness(name: str) -> float:
+        linear = exhibit("textures")[name].image.astype(float)
+        return float((linear.max(axis=-1) - linear.min(axis=-1)).max())
+
+    assert colourfulness("white") == 0
+    assert colourfulness("stained") > 60
+    assert values("textures", "stained").shape == (*SIZE[::-1], 3)
+    assert np.abs(values("textures", "fire_1_error")).max() > 0.1
+
+
+def test_a_sum_of_opacities_is_too_dark():
+    assert error("glass", "logarithm") < 0.03
+    assert error("glass", "sum") > 3 * error("glass", "logarithm")
+    logarithm, plain = values("glass", "logarithm"), values("glass", "sum")
+    assert np.all(plain <= logarithm + 1e-3)
+    # One sheet, two, three: 0.55 to the power of their number, and 0.45 less for each.
+    for sheets, sum_says in ((1, 0.55), (2, 0.1), (3, 0.0)):
+        wholly = np.abs(logarithm - 0.55**sheets) < 1e-3
+        assert wholly.any()
+        assert np.median(plain[wholly]) == pytest.approx(sum_says, abs=1e-3)
+
+
+def test_areas_err_less_than_their_samples():
+    assert error("areas", "areas") < 0.7 * error("areas", "samples")
+
+
+def test_counted_layers_explain_the_shadow():
+    middle, change, corner = (values("counters", name) for name in ("middle", "change", "corner"))
+    known = np.isfinite(middle) & np.isfinite(corner)
+    counted = np.unique(middle[known].round(3))
+    assert set(counted) >= {0, 2, 4}
+    assert not set(counted) - {0, 1, 2, 3, 4, 5, 6}
+    np.testing.assert_allclose(middle[known] + change[known], corner[known])
+    assert change[known].min() <= -2
+    assert change[known].max() >= 2
+    # Where no sample has a layer before it all are seen, and where any has one some are not.
+    most, soft = values("counters", "most"), values("counters", "soft")
+    assert np.all(soft[most == 0] == 1)
+    assert np.all(soft[most > 0] < 1)
+    hard = values("counters", "hard")
+    assert set(np.unique(hard)) <= {0, 1}
+
+
+def test_shapes_of_lights_differ():
+    pictures = [panel.image for panel in exhibit("shapes").panels]
+    assert len(pictures) == 5
+    for i, one in enumerate(pictures):
+        assert one.max() > 200
+        assert not any(np.array_equal(one, other) for other in pictures[:i])
+
+
+def test_triangles_say_what_rays_say():
+    assert np.nanmax(np.abs(values("foliage", "triangles_error"))) < 0.02
+    assert error("foliage", "hard") > 3 * error("foliage", "triangles")
+
+
+def test_false_colours():
+    signs = colors.signed(np.array([[-2.0, -1, 0, 1, np.nan]]))[0].astype(int)
+    np.testing.assert_array_equal(signs[0], signs[1])
+    assert signs[1, 2] > signs[1, 0]
+    assert signs[3, 0] > signs[3, 2]
+    assert np.ptp(signs[2]) < 5
+    many = colors.counts(np.array([[0.0, 2, 4, 8, 9, np.nan]]))[0]
+    assert len(np.unique(many, axis=0)) == 5
+    assert colors.srgb([0.0, 0.5, 2.0]).tolist() == [0, 188, 255]
+
+
+def test_numbers_are_left_out_where_nothing_was_measured():
+    blank = Panel(name="n", caption="c", image=np.zeros((1, 1, 3), np.uint8))
+    assert blank.numbers == ""
