@@ -63,7 +63,7 @@ fn entry_of(e: u32, shaft: Shaft) -> u32 {
     let side_b = turned(side_of_all(b, shaft), b);
     let is_pair = edge.incidence_count == 2u;
     let weight = select(side_a, side_a + side_b, is_pair);
-    let is_known = (edge.incidence_count <= 2u) & (side_a != 0) & (side_b != 0);
+    let is_known = (edge.incidence_count <= 2u) & (side_a != 0) & (side_b != 0) & (light_frame.weighs_from_light == 0u);
     let cancels = is_known & (weight == 0);
     return select(listed(e, select(0, weight, is_known)), NO_ENTRY, cancels | !meets_edge(shaft, edge.low, edge.high));
 }

@@ -1,6 +1,7 @@
 // Folds the silhouette edges of a part of a tile into the counters of its receivers, 64 samples at a time: D(s) is D(c) less what
 // changes at every edge on the way. Where a single depth hides the light, the area beyond the edges answers instead of the samples.
 //#import shared/receiver.wgsl
+//#import depth_complexity/sides.wgsl
 //#import depth_complexity/edge.wgsl
 //#import depth_complexity/horizon.wgsl
 //#import depth_complexity/coverage.wgsl
@@ -57,7 +58,7 @@ fn weight(view: FrameView, edge: OccluderEdge, triangle: u32) -> i32 {
     var sum = 0;
     for (var k = 0u; k < edge.incidence_count; k++) {
         let face = incident_face_of(incident_faces[edge.first_incidence + k]);
-        let left = turned(side_of_plane(face.normal, face.point, face.flatness, view.position), face);
+        let left = weighing_side(light_frame, view, face);
         sum += select(left, 0, (face.reference >> 1u) == triangle);
     }
     return sum;
@@ -466,7 +467,7 @@ fn weight_of_both(view: FrameView, edge: OccluderEdge, triangle: u32) -> Layers 
     for (var k = 0u; k < face_count(edge); k++) {
         let face = incident_face_of(incident_faces[edge.first_incidence + k]);
         let units = triangle_attenuation[face.reference >> 1u];
-        let turn = turned(side_of_plane(face.normal, face.point, face.flatness, view.position), face);
+        let turn = weighing_side(light_frame, view, face);
         let left = select(turn, 0, (face.reference >> 1u) == triangle);
         sum.opaque += select(0, left, units == OPAQUE);
         sum.attenuation += select(left * i32(units), 0, units == OPAQUE);

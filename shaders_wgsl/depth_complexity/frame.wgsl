@@ -16,7 +16,7 @@ struct LightFrame {
     x_way: vec3<f32>,        // from the centre of a flat light's frame to (1, 0) and (0, 1)
     sample_count: u32,
     y_way: vec3<f32>,
-    reserved0: u32,
+    weighs_from_light: u32,  // standard silhouettes: the reference point says on which side of a face an edge is
     reference: vec2<f32>,
     low: vec2<f32>,          // bounds of light and reference point, relative to the latter
     high: vec2<f32>,

@@ -7,6 +7,7 @@
 // Corners are drawn to a part of a pixel, and thin triangles may fold over: then a pixel has two fragments of one facing and one of the
 // other. What faces the other way counts backwards, so that an edge always counts once.
 //#import shared/receiver.wgsl
+//#import depth_complexity/sides.wgsl
 //#import depth_complexity/coverage.wgsl
 //#import depth_complexity/blended/hull.wgsl
 //#import depth_complexity/blended/packing.wgsl
@@ -63,7 +64,7 @@ fn weight(view: FrameView, edge: OccluderEdge, triangle: u32) -> i32 {
     var sum = 0;
     for (var k = 0u; k < edge.incidence_count; k++) {
         let face = incident_faces[edge.first_incidence + k];
-        let left = turned(side_of_plane(face.normal, face.point, face.flatness, view.position), face);
+        let left = weighing_side(light_frame, view, face);
         sum += select(left, 0, (face.reference >> 1u) == triangle);
     }
     return sum;

@@ -112,6 +112,31 @@ fn silhouettes_of_one_point_are_fewer_and_wrong() {
     assert!(accurate < 1e-4 && standard > 0.01 && few * 2 < all, "{accurate} {all} {standard} {few}");
 }
 
+/// The loop of edges around a body, as the light's reference point sees it, closes: however fine the mesh is, its shadow is that of a flat
+/// body as wide as the loop.
+#[test]
+fn silhouettes_of_one_point_close_on_fine_meshes() {
+    let light = [lamp(rectangle(1.6, 1.6), [0.0, 0.0, 1.7])];
+    let floor = points((0..301).map(|k| [f64::from(k) * 0.008, f64::from(k) * 0.0008, -0.6]).collect());
+    let standard = |subdivisions| {
+        let silhouettes = Silhouettes::Standard;
+        let technique = DepthComplexity { silhouettes, exact_area: false, ..folded(256) };
+        see(&scene(&sphere([0.0; 3], 0.4, subdivisions)), &light, &floor, &Technique::DepthComplexity(technique)).values
+    };
+    let rays = see(&scene(&sphere([0.0; 3], 0.4, 4)), &light, &floor, &ray_traced(256)).values;
+    let rmse = |a: &[f32], b: &[f32]| {
+        let squares: f64 = a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum();
+        (squares / a.len() as f64).sqrt()
+    };
+    let [coarse, fine] = [3, 4].map(standard);
+    let apart = [rmse(&coarse, &fine), rmse(&coarse, &rays), rmse(&fine, &rays)];
+    println!(
+        "standard silhouettes of a ball: coarse to fine {:.4}, to rays {:.4} and {:.4}",
+        apart[0], apart[1], apart[2]
+    );
+    assert!(apart[0] < 0.01 && apart[2] < 0.08 && apart[2] > 0.005, "{apart:?}");
+}
+
 #[test]
 fn lights_within_the_scene_cut_it() {
     let scene = scene(&[torus(0.6, 0.3, 24, 12), sphere([0.0, 0.0, 0.1], 0.3, 2)].concat());

@@ -46,7 +46,7 @@
 //! blended. `attenuation: sum` is right for one sheet alone: two of opacity 0.5 hide everything, where a quarter
 //! passes, and a closed body is two sheets.
 //! `table` puts samples within a cell of an edge on either side of it: some in a thousand.
-//! `standard` silhouettes are for comparison: a round body's penumbra is too narrow, and counts do not close.
+//! `standard` silhouettes are for comparison: a body casts the shadow of the flat one within the loop of edges that c sees.
 //! Blended: points are refused, and so are scenes with semi-opaque triangles, and receivers that stand half a pixel from the middle of
 //! theirs, on triangles thinner than a pixel. `z_fail` decides by rasterised depth what lies behind a receiver, which contradicts the edges
 //! for about 1 receiver of 7,000.

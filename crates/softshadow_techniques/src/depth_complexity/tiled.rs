@@ -25,8 +25,8 @@ const HEAD_BYTES: u64 = 40;
 const CHUNK_BYTES: u64 = 128;
 /// Chunks of lists that a tile and its bundles get on average, together: 3,840 edges and faces.
 const CHUNKS_PER_TILE: u64 = 128;
-/// Chunks beyond that: in a block of few tiles one may have far more than the average of an image.
-const SPARE_CHUNKS: u64 = 4096;
+/// Chunks beyond that, 8 MiB: a small image has few tiles, and each sees as much of the scene as many tiles of a large one.
+const SPARE_CHUNKS: u64 = 65_536;
 /// Bytes of `ListCounts`.
 pub(super) const COUNT_BYTES: u64 = 32;
 /// Bytes of `TilePart`.
@@ -123,6 +123,7 @@ pub(super) fn append_fold(
         .bind("groups_of_clusters", groups);
     let why = "lists for each tile the edges that can be silhouettes in its shaft";
     plan.compute("cull edges", why, CULL, items(2 * tile_count, 512))
+        .bind("light_frame", reads.frame)
         .bind("cluster_range", range)
         .bind("edges", edges)
         .bind("incident_faces", incident_faces)

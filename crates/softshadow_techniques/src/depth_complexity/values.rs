@@ -8,7 +8,7 @@ use super::coverage_table::coverage_table;
 use super::order::order;
 use super::tiled::{CLUSTER, tiles};
 use super::unit::{Unit, unit_of};
-use super::{Attenuation, DepthComplexity, Evaluation, blended, covered, touching};
+use super::{Attenuation, DepthComplexity, Evaluation, Silhouettes, blended, covered, touching};
 use crate::TechniqueError;
 use crate::parts::light_buffers::{self, Sampling};
 use crate::parts::opacity::UNITS_PER_WHOLE;
@@ -42,7 +42,7 @@ pub struct FrameRecord {
     x_way: [f32; 3],
     sample_count: u32,
     y_way: [f32; 3],
-    reserved0: u32,
+    weighs_from_light: u32,
     reference: [f32; 2],
     low: [f32; 2],
     high: [f32; 2],
@@ -108,7 +108,10 @@ pub(crate) fn values(
         _ => Vec::new(),
     };
     let answers = area_answers(request, settings);
-    let record = frame_record(&frame, settings.samples, if answers { corners.len() } else { 0 });
+    let record = FrameRecord {
+        weighs_from_light: u32::from(settings.silhouettes == Silhouettes::Standard),
+        ..frame_record(&frame, settings.samples, if answers { corners.len() } else { 0 })
+    };
     values.insert("light frame".into(), bytemuck::bytes_of(&record).to_vec());
     let padded = |points: &[[f32; 2]], length: usize| -> Vec<u8> {
         let mut rows: Vec<[f32; 4]> = points.iter().take(length).map(|p| [p[0], p[1], 0.0, 0.0]).collect();

@@ -184,7 +184,10 @@ fn calls_that_cannot_be_drawn_are_refused_by_name() {
     );
     let mut blind = plain;
     blind.features.raster = false;
-    assert!(refused(words, fixture.camera(), &blind).unwrap_err().contains("'tiled'"));
+    assert_eq!(
+        refused(words, fixture.camera(), &blind).unwrap_err(),
+        "depth_complexity device: it draws triangles, which this one does not; use 'gpu' or 'software'"
+    );
     let float = settings(64, Counters::Float);
     let words = refused(float.clone(), fixture.camera(), &plain).unwrap_err();
     assert!(words.contains("counters") && words.contains("float32-blendable") && words.contains("'words'"), "{words}");

@@ -185,7 +185,7 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                 // of 32 words.
                 add("tile parts".into(), tiles * 2 * (5 * 16 + 32));
                 add("first faces".into(), tiles * 2 * 8 * 4);
-                add("edge lists".into(), tiles * (2 * 40 + 128 * 128) + 4096 * 128);
+                add("edge lists".into(), tiles * (2 * 40 + 128 * 128) + 65_536 * 128);
                 add("narrow dispatch".into(), 12);
                 add("fold dispatch".into(), 12);
                 for group in 0..samples.div_ceil(64) {
