@@ -82,9 +82,8 @@ pub(super) fn before_limit<S: Simd>(
     let t = (view.limit - low) / span.simd_eq(zero).select(one, span);
     let cut = image.low + (image.high - image.low).scale(t);
     let nothing = Vec3x8::new(zero, zero, zero);
-    let ends = |is_before, other_is_before, end| {
-        Vec3x8::select(is_before, end, Vec3x8::select(other_is_before, cut, nothing))
-    };
+    let ends =
+        |is_before, other_is_before, end| Vec3x8::select(is_before, end, Vec3x8::select(other_is_before, cut, nothing));
     EdgeImage {
         low: ends(low_is_before, high_is_before, image.low),
         high: ends(high_is_before, low_is_before, image.high),
@@ -95,10 +94,7 @@ pub(super) fn before_limit<S: Simd>(
 impl<S: Simd> EdgeImage<S> {
     #[inline(always)]
     fn along(&self) -> Vec2x8<S> {
-        [
-            self.high.x * self.low.z - self.low.x * self.high.z,
-            self.high.y * self.low.z - self.low.y * self.high.z,
-        ]
+        [self.high.x * self.low.z - self.low.x * self.high.z, self.high.y * self.low.z - self.low.y * self.high.z]
     }
 
     /// Directions of the ends from the reference point, low first. An end behind the receiver is replaced by where the edge crosses the
