@@ -77,10 +77,12 @@ pub(crate) enum Same {
     /// Bit for bit.
     Bits,
     /// As float32 within this distance, not-a-numbers alike.
+    #[expect(dead_code, reason = "for twins on their way")]
     Within(f32),
     /// After both were brought into an order of their own.
     Sorted(fn(&[u32]) -> Vec<Vec<u32>>),
     /// Not at all, for this reason.
+    #[expect(dead_code, reason = "for twins on their way")]
     Apart(&'static str),
 }
 

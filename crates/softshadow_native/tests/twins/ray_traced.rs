@@ -22,6 +22,11 @@ fn call(settings: RayTraced, scene: &Scene, lights: Vec<Light>, receivers: Sourc
     Call { until: Some("resolve"), ..call }
 }
 
+fn agrees(call: &Call, case: &str) {
+    let native = NativeEngine::new(NativeSettings::default());
+    assert_eq!(call.difference(&native, None, &same), None, "{case}");
+}
+
 /// A light where that of the fork is.
 fn above_fork(shape: LightShape) -> Light {
     Light::new(shape, look_at([-1.7, 1.5, 0.2], [0.0, 0.0, 0.3], None).unwrap()).unwrap()
@@ -53,10 +58,10 @@ fn scattered(count: usize, with_normals: bool) -> Source {
 fn every_light_is_hidden_from_the_same_pixels() {
     for (name, shape) in shapes() {
         for probes in [0, 5] {
-            println!("{name}, {probes} probes");
             let (scene, _, camera) = shipped("fork", [61, 43]);
             let settings = RayTraced { probes, ..RayTraced::default() };
-            call(settings, &scene, vec![above_fork(shape.clone())], camera).compare(same);
+            let call = call(settings, &scene, vec![above_fork(shape.clone())], camera);
+            agrees(&call, &format!("{name}, {probes} probes"));
         }
     }
 }
@@ -66,9 +71,9 @@ fn points_behind_a_light_and_inside_it_see_the_same() {
     let (scene, ..) = shipped("fork", [8, 8]);
     for (name, shape) in shapes() {
         for with_normals in [false, true] {
-            println!("{name}, normals {with_normals}");
             let light = above_fork(shape.clone());
-            call(RayTraced::default(), &scene, vec![light], scattered(3000, with_normals)).compare(same);
+            let call = call(RayTraced::default(), &scene, vec![light], scattered(3000, with_normals));
+            agrees(&call, &format!("{name}, normals {with_normals}"));
         }
     }
 }
@@ -77,10 +82,10 @@ fn points_behind_a_light_and_inside_it_see_the_same() {
 fn samples_are_taken_from_the_same_sets() {
     for spread in [SampleSpread::Correlated, SampleSpread::Decorrelated, SampleSpread::Interleaved] {
         for (samples, probes) in [(1, 0), (33, 0), (64, 40), (100, 7)] {
-            println!("{spread:?}, {samples} samples, {probes} probes");
             let (scene, _, camera) = shipped("fork", [40, 30]);
             let settings = RayTraced { samples, probes, spread, passes: 2, tile: 3, ..RayTraced::default() };
-            call(settings, &scene, vec![above_fork(LightShape::Disc { radius: 0.3 })], camera).compare(same);
+            let call = call(settings, &scene, vec![above_fork(LightShape::Disc { radius: 0.3 })], camera);
+            agrees(&call, &format!("{spread:?}, {samples} samples, {probes} probes"));
         }
     }
     let (scene, _, _) = shipped("fork", [8, 8]);
@@ -126,9 +131,8 @@ fn the_same_share_passes_semi_opaque_triangles() {
     }
     let (scene, ..) = shipped("fork", [8, 8]);
     for (name, shape) in shapes() {
-        println!("{name}");
         let light = above_fork(shape);
-        call(RayTraced::default(), &semi_opaque(&scene), vec![light], scattered(2000, true)).compare(same);
+        agrees(&call(RayTraced::default(), &semi_opaque(&scene), vec![light], scattered(2000, true)), name);
     }
 }
 

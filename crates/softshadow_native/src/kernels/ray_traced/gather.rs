@@ -41,18 +41,8 @@ pub(super) fn gather(call: &mut Call) {
 fn gather_run<S: Simd>(simd: S, scene: &Scene<'_>, asked: &[u32]) -> Vec<Candidate> {
     let mut found = Vec::new();
     for eight in asked.chunks(LANES) {
-        let walk = bundle_walk(simd, scene, std::array::from_fn(|k| eight[k.min(eight.len() - 1)]));
-        for (k, &receiver) in eight.iter().enumerate() {
-            let mut own = walk.lane(k);
-            if walk.goes_on_at.is_some() {
-                // The limit is on the steps of one bundle, and eight together take more.
-                let alone = bundle_walk(simd, scene, [receiver; LANES]);
-                own = alone.lane(0);
-                if let Some(node) = alone.goes_on_at {
-                    own = [own[0].min(node), scene.nodes.len() as u32 - 1];
-                }
-            }
-            let [first_node, last_node] = own;
+        let [first, last] = bundle_walks(simd, scene, std::array::from_fn(|k| eight[k.min(eight.len() - 1)]));
+        for ((&receiver, first_node), last_node) in eight.iter().zip(first).zip(last) {
             if first_node <= last_node {
                 found.push(Candidate { receiver, first_node, last_node });
             }
@@ -62,37 +52,36 @@ fn gather_run<S: Simd>(simd: S, scene: &Scene<'_>, asked: &[u32]) -> Vec<Candida
 }
 
 /// First and last leaf that each bundle can meet; `first` is the number of nodes where there is none.
-struct Walk<S: Simd> {
-    first: u32x8<S>,
-    last: u32x8<S>,
-    /// Where the walk was too long.
-    goes_on_at: Option<u32>,
-}
-
-impl<S: Simd> Walk<S> {
-    #[inline(always)]
-    fn lane(&self, k: usize) -> [u32; 2] {
-        [self.first.as_slice()[k], self.last.as_slice()[k]]
-    }
-}
-
 #[inline(always)]
-fn bundle_walk<S: Simd>(simd: S, scene: &Scene<'_>, receivers: [u32; LANES]) -> Walk<S> {
+fn bundle_walks<S: Simd>(simd: S, scene: &Scene<'_>, receivers: [u32; LANES]) -> [[u32; LANES]; 2] {
     let bundles = Bundles::new(simd, &scene.light, &receivers.map(|index| scene.receivers[index as usize]));
-    let mut first = u32x8::splat(simd, scene.nodes.len() as u32);
-    let mut last = u32x8::splat(simd, 0);
-    let (mut node, mut steps) = (0, 0);
-    while node < scene.nodes.len() && steps < LONGEST_BUNDLE_WALK {
-        steps += 1;
+    let splat = |value: u32| u32x8::splat(simd, value);
+    let end = splat(scene.nodes.len() as u32);
+    let (mut first, mut last, mut steps) = (end, splat(0), splat(0));
+    // Each walks alone: the node at which it goes on lies behind the others' where they go down and it does not.
+    let mut next = splat(0);
+    let mut node = 0;
+    while node < scene.nodes.len() {
         let here = &scene.nodes[node];
-        let met = bundles.meet(simd, here);
+        let this = splat(node as u32);
+        let walking = next.simd_le(this);
+        let met = bundles.meet(simd, here) & walking;
         let any = met.any_true();
         if any && here.leaf != 0 {
-            let leaf = u32x8::splat(simd, node as u32);
-            first = met.select(first.min(leaf), first);
-            last = met.select(leaf, last);
+            first = met.select(first.min(this), first);
+            last = met.select(this, last);
+        }
+        let (skip, down) = (splat(here.skip), splat(node as u32 + 1));
+        next = walking.select(met.select(down, skip), next);
+        steps = walking.select(steps + splat(1), steps);
+        let long = walking & steps.simd_ge(splat(LONGEST_BUNDLE_WALK)) & next.simd_lt(end);
+        // A walk that was not finished has met what it has met, and may meet more to the end.
+        if long.any_true() {
+            first = long.select(first.min(next), first);
+            last = long.select(end - splat(1), last);
+            next = long.select(end, next);
         }
         node = if any && here.leaf == 0 { node + 1 } else { here.skip as usize };
     }
-    Walk { first, last, goes_on_at: (node < scene.nodes.len()).then_some(node as u32) }
+    [first.to_array(), last.to_array()]
 }

@@ -89,10 +89,15 @@ fn first_leaves<S: Simd>(simd: S, scene: &Scene<'_>, candidates: &[Candidate; LA
 /// the outer side.
 #[inline(always)]
 fn can_block<S: Simd>(simd: S, bundles: &Bundles<S>, [v0, v1, v2]: [Vec3; 3]) -> mask32x8<S> {
-    let [a, b, c] = [v0, v1, v2].map(|v| Vec3x8::splat(simd, v) - bundles.origin);
+    // Closures over arrays would not be inlined, and would lose the processor's instructions.
+    let a = Vec3x8::splat(simd, v0) - bundles.origin;
+    let b = Vec3x8::splat(simd, v1) - bundles.origin;
+    let c = Vec3x8::splat(simd, v2) - bundles.origin;
     let normal = bundles.normal;
     let top = normal.dot(a).max(normal.dot(b).max(normal.dot(c)));
-    let [ab, bc, ca] = [(a, v1 - v0), (b, v2 - v1), (a, v0 - v2)].map(|(at, edge)| way_range(simd, at, edge, bundles));
+    let ab = way_range(simd, a, v1 - v0, bundles);
+    let bc = way_range(simd, b, v2 - v1, bundles);
+    let ca = way_range(simd, a, v0 - v2, bundles);
     let zero = f32x8::splat(simd, 0.0);
     let left = ab[1].simd_ge(zero) & bc[1].simd_ge(zero) & ca[1].simd_ge(zero);
     let right = ab[0].simd_le(zero) & bc[0].simd_le(zero) & ca[0].simd_le(zero);

@@ -14,7 +14,7 @@ use crate::engine::{Call, atomic_words, shared};
 use crate::kernels::lanes::{LANES, Vec3x8};
 use crate::kernels::records;
 use crate::kernels::shared::hierarchy::{BvhNode, box_pad, eight_reciprocals};
-use crate::kernels::shared::light::{LIGHT_SUN, Light, eight_ways, light_view};
+use crate::kernels::shared::light::{LIGHT_SUN, Light, LightView, eight_ways, light_view};
 use crate::kernels::shared::receiver::Receiver;
 use crate::kernels::shared::samples::{Sampling, first_sample};
 use crate::kernels::shared::triangle::{Corner, triangle_blocks};
@@ -112,24 +112,35 @@ fn gather_neighbours(order: &mut [u32], samples: &[[f32; 4]]) {
     gather_neighbours(high, samples);
 }
 
+/// What the rays of one candidate share.
+struct Own<'a> {
+    walk: &'a Candidate,
+    receiver: &'a Receiver,
+    view: LightView,
+    first_sample: u32,
+}
+
 impl Scene<'_> {
-    /// The samples that a receiver asks for, those of a set whose samples begin at `own`.
-    fn asked(&self, index: u32, own: u32) -> impl Iterator<Item = u32> {
+    fn own<'a>(&'a self, walk: &'a Candidate) -> Own<'a> {
+        let receiver = &self.receivers[walk.receiver as usize];
+        let first_sample = first_sample(&self.sampling, walk.receiver);
+        Own { walk, receiver, view: light_view(&self.light, receiver.position), first_sample }
+    }
+
+    /// The samples that a candidate asks for.
+    fn asked(&self, own: &Own<'_>) -> impl Iterator<Item = u32> {
         let length = self.range.end_sample - self.range.first_sample;
-        let first = (own / self.sampling.count * length) as usize;
-        let decided = self.decided[index as usize];
+        let first = (own.first_sample / self.sampling.count * length) as usize;
+        let decided = self.decided[own.walk.receiver as usize];
         self.order[first..first + length as usize].iter().copied().filter(move |sample| *sample < decided)
     }
 
     /// The rays to at most eight samples; those to the first fill up the lanes.
     #[inline(always)]
-    fn rays<S: Simd>(&self, simd: S, candidate: &Candidate, own: u32, samples: &[u32]) -> Rays<'_, S> {
-        let receiver = &self.receivers[candidate.receiver as usize];
-        let of = |k: usize| self.samples[(own + samples[if k < samples.len() { k } else { 0 }]) as usize];
-        let records = std::array::from_fn(of);
-        let view = light_view(&self.light, receiver.position);
-        let ways = eight_ways(simd, &self.light, &view, &records, receiver.position);
-        Rays::new(simd, self, receiver, ways, candidate)
+    fn rays<S: Simd>(&self, simd: S, own: &Own<'_>, samples: &[u32]) -> Rays<'_, S> {
+        let of = |k: usize| self.samples[(own.first_sample + samples[if k < samples.len() { k } else { 0 }]) as usize];
+        let ways = eight_ways(simd, &self.light, &own.view, &std::array::from_fn(of), own.receiver.position);
+        Rays::new(simd, self, own.receiver, ways, own.walk)
     }
 }
 
@@ -209,15 +220,14 @@ impl<'a, S: Simd> Rays<'a, S> {
 fn trace_run<S: Simd>(simd: S, scene: &Scene<'_>, candidates: &[Candidate], blocked: &[AtomicU32]) {
     let mut open = Vec::new();
     for candidate in candidates {
-        let index = candidate.receiver;
-        let own = first_sample(&scene.sampling, index);
+        let own = scene.own(candidate);
         let words = scene.sampling.words as usize;
-        let mask = &blocked[index as usize * words..][..words];
+        let mask = &blocked[candidate.receiver as usize * words..][..words];
         let is_open = |sample: &u32| shared(&mask[(sample / 32) as usize]) >> (sample % 32) & 1 == 0;
         open.clear();
-        open.extend(scene.asked(index, own).filter(is_open));
+        open.extend(scene.asked(&own).filter(is_open));
         for eight in open.chunks(LANES) {
-            let hit = blocked_of(simd, scene.rays(simd, candidate, own, eight)).to_bitmask();
+            let hit = blocked_of(simd, scene.rays(simd, &own, eight)).to_bitmask();
             for (k, sample) in eight.iter().enumerate() {
                 if hit >> k & 1 == 1 {
                     // Each receiver is a candidate once, so nobody else writes its words.
@@ -253,15 +263,14 @@ fn attenuate_run<S: Simd>(
 ) {
     let mut open = Vec::new();
     for candidate in candidates {
-        let index = candidate.receiver;
-        let own = first_sample(&scene.sampling, index);
+        let own = scene.own(candidate);
         let count = scene.sampling.count as usize;
-        let passing = &passing[index as usize * count..][..count];
+        let passing = &passing[candidate.receiver as usize * count..][..count];
         let before = |sample: u32| f32::from_bits(shared(&passing[sample as usize]));
         open.clear();
-        open.extend(scene.asked(index, own).filter(|sample| before(*sample) > 0.0));
+        open.extend(scene.asked(&own).filter(|sample| before(*sample) > 0.0));
         for eight in open.chunks(LANES) {
-            let shares = passed_shares(simd, scene.rays(simd, candidate, own, eight), transmittances).to_array();
+            let shares = passed_shares(simd, scene.rays(simd, &own, eight), transmittances).to_array();
             for (sample, share) in eight.iter().zip(shares) {
                 passing[*sample as usize].store((before(*sample) * share).to_bits(), Ordering::Relaxed);
             }

@@ -4,7 +4,6 @@ use bytemuck::{Pod, Zeroable};
 use fearless_simd::{Simd, f32x8, prelude::*};
 use glam::{Vec3, Vec4};
 
-use super::receiver::{RECEIVER_SURFACE, Receiver};
 use crate::kernels::lanes::{LANES, Vec3x8};
 
 pub(crate) const LIGHT_FLAT: u32 = 0;
@@ -72,6 +71,7 @@ pub(crate) fn light_view(light: &Light, receiver: Vec3) -> LightView {
 }
 
 /// A point on the light and 1, or a direction towards the sun and 0.
+#[cfg_attr(not(test), expect(dead_code, reason = "kernels that shade are on their way"))]
 pub(crate) fn light_sample(light: &Light, view: &LightView, record: [f32; 4], receiver: Vec3) -> Vec4 {
     let [x, y, ..] = record;
     if light.kind != LIGHT_SPHERE {
@@ -86,6 +86,7 @@ pub(crate) fn light_sample(light: &Light, view: &LightView, record: [f32; 4], re
 }
 
 /// The way from a receiver to a sample: the whole segment, or a direction towards the sun.
+#[cfg_attr(not(test), expect(dead_code, reason = "kernels that shade are on their way"))]
 pub(crate) fn light_way(target_and_kind: Vec4, receiver: Vec3) -> Vec3 {
     target_and_kind.truncate() - target_and_kind.w * receiver
 }
@@ -136,6 +137,27 @@ pub(crate) fn light_way_bounds(light: &Light, view: &LightView, receiver: Vec3) 
     }
 }
 
-pub(crate) fn below_horizon(receiver: &Receiver, way: Vec3) -> bool {
-    receiver.kind == RECEIVER_SURFACE && receiver.normal.dot(way) <= 0.0
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+
+    #[test]
+    fn eight_ways_are_those_of_each_sample() {
+        let records: [[f32; 4]; LANES] =
+            std::array::from_fn(|k| [0.1 * k as f32 - 0.3, 0.7 - 0.2 * k as f32, 0.9, 1.0]);
+        for kind in [LIGHT_FLAT, LIGHT_SPHERE, LIGHT_SUN] {
+            let light = Light { center: Vec3::new(0.3, 0.4, 2.0), kind, radius: 0.6, ..Light::zeroed() };
+            for receiver in [Vec3::new(0.1, -0.2, 0.3), Vec3::new(0.3, 0.5, 1.9)] {
+                let view = light_view(&light, receiver);
+                let ways = dispatch!(Level::new(), simd => {
+                    let ways = eight_ways(simd, &light, &view, &records, receiver);
+                    std::array::from_fn::<Vec3, LANES, _>(|k| ways.lane(k))
+                });
+                let each = records.map(|record| light_way(light_sample(&light, &view, record, receiver), receiver));
+                assert_eq!(ways, each, "kind {kind}");
+            }
+        }
+    }
 }
