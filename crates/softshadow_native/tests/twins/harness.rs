@@ -196,10 +196,10 @@ fn written(plan: &Plan) -> Vec<ResourceId> {
     found
 }
 
-type Buffers = BTreeMap<String, Vec<u32>>;
+pub(crate) type Buffers = BTreeMap<String, Vec<u32>>;
 
 /// What every stage leaves in its buffers.
-fn outputs(
+pub(crate) fn outputs(
     engine: &dyn Engine,
     program: &dyn Program,
     contents: &BTreeMap<ContentKey, Content>,
@@ -217,7 +217,7 @@ fn outputs(
     found
 }
 
-fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
+pub(crate) fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
     assert!(theirs.keys().eq(ours.keys()), "the same buffers");
     theirs.iter().find_map(|(label, theirs)| {
         let ours = &ours[label];
