@@ -4,3 +4,4 @@ mod harness;
 mod one_kernel;
 mod receivers;
 mod resolve;
+mod shading;
