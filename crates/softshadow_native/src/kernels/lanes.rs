@@ -41,7 +41,6 @@ impl<S: Simd> Vec3x8<S> {
     }
 
     /// One lane.
-    #[cfg_attr(not(test), expect(dead_code, reason = "kernels that give lanes out are on their way"))]
     #[inline(always)]
     pub(crate) fn lane(&self, k: usize) -> Vec3 {
         Vec3::new(self.x.as_slice()[k], self.y.as_slice()[k], self.z.as_slice()[k])

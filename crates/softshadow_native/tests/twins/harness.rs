@@ -77,7 +77,6 @@ pub(crate) enum Same {
     /// Bit for bit.
     Bits,
     /// As float32 within this distance, not-a-numbers alike.
-    #[expect(dead_code, reason = "for twins on their way")]
     Within(f32),
     /// After both were brought into an order of their own.
     Sorted(fn(&[u32]) -> Vec<Vec<u32>>),
@@ -230,10 +229,10 @@ fn written(plan: &Plan) -> Vec<ResourceId> {
     found
 }
 
-type Buffers = BTreeMap<String, Vec<u32>>;
+pub(crate) type Buffers = BTreeMap<String, Vec<u32>>;
 
 /// What every stage leaves in its buffers.
-fn outputs(
+pub(crate) fn outputs(
     engine: &dyn Engine,
     program: &dyn Program,
     contents: &BTreeMap<ContentKey, Content>,
@@ -251,7 +250,7 @@ fn outputs(
     found
 }
 
-fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
+pub(crate) fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
     assert!(theirs.keys().eq(ours.keys()), "the same buffers");
     theirs.iter().find_map(|(label, theirs)| {
         let ours = &ours[label];

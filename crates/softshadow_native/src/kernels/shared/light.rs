@@ -71,7 +71,7 @@ pub(crate) fn light_view(light: &Light, receiver: Vec3) -> LightView {
 }
 
 /// A point on the light and 1, or a direction towards the sun and 0.
-#[cfg_attr(not(test), expect(dead_code, reason = "kernels that shade are on their way"))]
+#[cfg_attr(not(test), expect(dead_code, reason = "kernels of single samples are on their way"))]
 pub(crate) fn light_sample(light: &Light, view: &LightView, record: [f32; 4], receiver: Vec3) -> Vec4 {
     let [x, y, ..] = record;
     if light.kind != LIGHT_SPHERE {
@@ -86,7 +86,7 @@ pub(crate) fn light_sample(light: &Light, view: &LightView, record: [f32; 4], re
 }
 
 /// The way from a receiver to a sample: the whole segment, or a direction towards the sun.
-#[cfg_attr(not(test), expect(dead_code, reason = "kernels that shade are on their way"))]
+#[cfg_attr(not(test), expect(dead_code, reason = "kernels of single samples are on their way"))]
 pub(crate) fn light_way(target_and_kind: Vec4, receiver: Vec3) -> Vec3 {
     target_and_kind.truncate() - target_and_kind.w * receiver
 }
