@@ -66,6 +66,11 @@ impl<S: Simd> Vec3x8<S> {
     }
 
     #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        Self { x: self.x.abs(), y: self.y.abs(), z: self.z.abs() }
+    }
+
+    #[inline(always)]
     pub(crate) fn min(self, other: Self) -> Self {
         Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
     }

@@ -52,6 +52,8 @@ pub(crate) struct Call {
     pub(crate) wants: Wants,
     /// Receivers of a block at most.
     pub(crate) block: usize,
+    /// The label of the pass with which every stage ends before it is begun.
+    pub(crate) until: Option<&'static str>,
 }
 
 /// Where receivers come from.
@@ -79,13 +81,14 @@ pub(crate) enum Same {
     /// After both were brought into an order of their own.
     Sorted(fn(&[u32]) -> Vec<Vec<u32>>),
     /// Not at all, for this reason.
+    #[expect(dead_code, reason = "for twins on their way")]
     Apart(&'static str),
 }
 
 impl Call {
     pub(crate) fn new(technique: Technique, scene: &Scene, lights: Vec<Light>, receivers: Source) -> Self {
         let scene = SceneContents::new(LocalScene::new(scene, None, host().limits.storage_binding_bytes));
-        Self { technique, scene, lights, receivers, wants: Wants::default(), block: 1 << 20 }
+        Self { technique, scene, lights, receivers, wants: Wants::default(), block: 1 << 20, until: None }
     }
 
     /// Cuts the scene into parts of so many bytes.
@@ -115,6 +118,16 @@ impl Call {
         end: Option<(usize, usize)>,
         same: &impl Fn(&str) -> Same,
     ) -> Option<String> {
+        self.difference_between([device(), native], end, same)
+    }
+
+    /// The first difference between two engines.
+    pub(crate) fn difference_between(
+        &self,
+        engines: [&dyn Engine; 2],
+        end: Option<(usize, usize)>,
+        same: &impl Fn(&str) -> Same,
+    ) -> Option<String> {
         let occluders: Vec<Arc<OccluderContents>> = if self.technique.wants_occluders() {
             let local = &self.scene.local;
             let of = |light| Arc::new(OccluderContents::new(local, boundary_of(local, light)).unwrap());
@@ -138,13 +151,14 @@ impl Call {
         program.check().unwrap();
         let contents = self.scene.contents().chain(occluders.iter().flat_map(|o| o.contents()));
         let contents: BTreeMap<ContentKey, Content> = contents.map(|c| (c.key, c.clone())).collect();
-        let whole = [outputs(device(), &program, &contents, end), outputs(native, &program, &contents, end)];
+        let program = Until { program: &program, label: self.until };
+        let whole = engines.map(|engine| outputs(engine, &program, &contents, end));
         let stage = (0..whole[0].len()).find(|i| differing(&whole[0][*i], &whole[1][*i], same).is_some())?;
         let Step::Run(broken) = program.step(stage, &[]) else { unreachable!("it ran") };
         // Which pass was the first to go astray.
         let after = |passes| {
-            let [theirs, ours] = [device() as &dyn Engine, native]
-                .map(|engine| outputs(engine, &program, &contents, Some((stage, passes))).remove(stage));
+            let [theirs, ours] =
+                engines.map(|engine| outputs(engine, &program, &contents, Some((stage, passes))).remove(stage));
             differing(&theirs, &ours, same)
         };
         let last = end.map_or(broken.plan.passes.len(), |(_, passes)| passes);
@@ -152,6 +166,25 @@ impl Call {
         let (passes, words) =
             first.unwrap_or_else(|| (last, differing(&whole[0][stage], &whole[1][stage], same).unwrap_or_default()));
         Some(format!("stage {stage}, after '{}': {words}", broken.plan.passes[passes - 1].label))
+    }
+}
+
+/// A program whose stages end before a pass.
+struct Until<'a> {
+    program: &'a dyn Program,
+    label: Option<&'static str>,
+}
+
+impl Program for Until<'_> {
+    fn step(&self, index: usize, decision: &[u32]) -> Step {
+        let Step::Run(mut stage) = self.program.step(index, decision) else { return Step::Done };
+        if let Some(label) = self.label {
+            let passes = &mut stage.plan.passes;
+            let end = passes.iter().position(|pass| pass.label == label).expect("a pass of this label");
+            passes.truncate(end);
+            stage.plan.decision = None;
+        }
+        Step::Run(stage)
     }
 }
 
@@ -196,10 +229,10 @@ fn written(plan: &Plan) -> Vec<ResourceId> {
     found
 }
 
-type Buffers = BTreeMap<String, Vec<u32>>;
+pub(crate) type Buffers = BTreeMap<String, Vec<u32>>;
 
 /// What every stage leaves in its buffers.
-fn outputs(
+pub(crate) fn outputs(
     engine: &dyn Engine,
     program: &dyn Program,
     contents: &BTreeMap<ContentKey, Content>,
@@ -217,7 +250,7 @@ fn outputs(
     found
 }
 
-fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
+pub(crate) fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
     assert!(theirs.keys().eq(ours.keys()), "the same buffers");
     theirs.iter().find_map(|(label, theirs)| {
         let ours = &ours[label];

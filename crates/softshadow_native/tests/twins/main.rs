@@ -1,4 +1,8 @@
 //! Twins against their WGSL: the same programs on Mesa's software driver and natively, compared buffer by buffer.
 
 mod harness;
+mod one_kernel;
+mod ray_traced;
 mod receivers;
+mod resolve;
+mod shading;
