@@ -1,0 +1,43 @@
+//! The twin of `shared/samples.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Sampling {
+    /// Samples of a receiver.
+    pub(crate) count: u32,
+    /// 32-bit words of a receiver's mask.
+    pub(crate) words: u32,
+    pub(crate) probes: u32,
+    pub(crate) pass_index: u32,
+    pub(crate) passes: u32,
+    /// Of samples, of which every receiver has one; with a row, the side of the square of pixels that has all.
+    pub(crate) sets: u32,
+    /// Pixels of a row, where sets are taken by place; 0 where they are drawn.
+    pub(crate) row: u32,
+    /// Of the block, among all of the call.
+    pub(crate) first_receiver: u32,
+}
+
+/// A number whose every bit depends on every bit of the index (Wellons' lowbias32).
+fn mixed(index: u32) -> u32 {
+    let x = (index ^ (index >> 16)).wrapping_mul(0x7feb_352d);
+    let x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
+}
+
+impl Sampling {
+    /// Where the set of a receiver of the block begins among all samples.
+    pub(crate) fn first_sample(&self, index: u32) -> u32 {
+        if self.sets < 2 {
+            return 0;
+        }
+        let at = self.first_receiver.wrapping_add(index);
+        let chosen = match self.row {
+            0 => mixed(at) % self.sets,
+            row => (at % row) % self.sets + self.sets * ((at / row) % self.sets),
+        };
+        chosen * self.count
+    }
+}
