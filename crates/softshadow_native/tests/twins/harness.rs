@@ -54,6 +54,8 @@ pub(crate) struct Call {
     pub(crate) block: usize,
     /// The label of the pass with which every stage ends before it is begun.
     pub(crate) until: Option<&'static str>,
+    /// Labels of passes before it that both engines leave out.
+    pub(crate) without: &'static [&'static str],
 }
 
 /// Where receivers come from.
@@ -80,15 +82,17 @@ pub(crate) enum Same {
     Within(f32),
     /// After both were brought into an order of their own.
     Sorted(fn(&[u32]) -> Vec<Vec<u32>>),
+    /// As what all buffers say together.
+    Said(fn(&Buffers) -> Vec<Vec<u32>>),
     /// Not at all, for this reason.
-    #[expect(dead_code, reason = "for twins on their way")]
     Apart(&'static str),
 }
 
 impl Call {
     pub(crate) fn new(technique: Technique, scene: &Scene, lights: Vec<Light>, receivers: Source) -> Self {
         let scene = SceneContents::new(LocalScene::new(scene, None, host().limits.storage_binding_bytes));
-        Self { technique, scene, lights, receivers, wants: Wants::default(), block: 1 << 20, until: None }
+        let wants = Wants::default();
+        Self { technique, scene, lights, receivers, wants, block: 1 << 20, until: None, without: &[] }
     }
 
     /// Cuts the scene into parts of so many bytes.
@@ -151,7 +155,7 @@ impl Call {
         program.check().unwrap();
         let contents = self.scene.contents().chain(occluders.iter().flat_map(|o| o.contents()));
         let contents: BTreeMap<ContentKey, Content> = contents.map(|c| (c.key, c.clone())).collect();
-        let program = Until { program: &program, label: self.until };
+        let program = Part { program: &program, until: self.until, without: self.without };
         let whole = engines.map(|engine| outputs(engine, &program, &contents, end));
         let stage = (0..whole[0].len()).find(|i| differing(&whole[0][*i], &whole[1][*i], same).is_some())?;
         let Step::Run(broken) = program.step(stage, &[]) else { unreachable!("it ran") };
@@ -169,21 +173,23 @@ impl Call {
     }
 }
 
-/// A program whose stages end before a pass.
-struct Until<'a> {
+/// A program whose stages end before a pass, and leave others out.
+struct Part<'a> {
     program: &'a dyn Program,
-    label: Option<&'static str>,
+    until: Option<&'static str>,
+    without: &'static [&'static str],
 }
 
-impl Program for Until<'_> {
+impl Program for Part<'_> {
     fn step(&self, index: usize, decision: &[u32]) -> Step {
         let Step::Run(mut stage) = self.program.step(index, decision) else { return Step::Done };
-        if let Some(label) = self.label {
-            let passes = &mut stage.plan.passes;
+        let passes = &mut stage.plan.passes;
+        if let Some(label) = self.until {
             let end = passes.iter().position(|pass| pass.label == label).expect("a pass of this label");
             passes.truncate(end);
             stage.plan.decision = None;
         }
+        passes.retain(|pass| !self.without.contains(&pass.label.as_str()));
         Step::Run(stage)
     }
 }
@@ -252,6 +258,7 @@ pub(crate) fn outputs(
 
 pub(crate) fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
     assert!(theirs.keys().eq(ours.keys()), "the same buffers");
+    let all = [theirs, ours];
     theirs.iter().find_map(|(label, theirs)| {
         let ours = &ours[label];
         let close = |within: f32, a: u32, b: u32| {
@@ -262,15 +269,17 @@ pub(crate) fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -
             Same::Apart(_) => None,
             Same::Bits => first_of(label, theirs, ours, |a, b| a == b),
             Same::Within(most) => first_of(label, theirs, ours, |a, b| close(most, a, b)),
-            Same::Sorted(rows) => {
-                let [mut a, mut b] = [rows(theirs), rows(ours)];
-                a.sort();
-                b.sort();
-                let at = (0..a.len().max(b.len())).find(|i| a.get(*i) != b.get(*i))?;
-                Some(format!("'{label}', row {at}: {:?} there, {:?} here", a.get(at), b.get(at)))
-            }
+            Same::Sorted(rows) => first_row(label, [rows(theirs), rows(ours)]),
+            Same::Said(rows) => first_row(label, all.map(rows)),
         }
     })
+}
+
+fn first_row(label: &str, mut rows: [Vec<Vec<u32>>; 2]) -> Option<String> {
+    rows.iter_mut().for_each(|rows| rows.sort());
+    let [a, b] = rows;
+    let at = (0..a.len().max(b.len())).find(|i| a.get(*i) != b.get(*i))?;
+    Some(format!("'{label}', row {at}: {:?} there, {:?} here", a.get(at), b.get(at)))
 }
 
 fn first_of(label: &str, theirs: &[u32], ours: &[u32], same: impl Fn(u32, u32) -> bool) -> Option<String> {

@@ -1,6 +1,7 @@
 //! Twins against their WGSL: the same programs on Mesa's software driver and natively, compared buffer by buffer.
 
 mod harness;
+mod lists;
 mod one_kernel;
 mod ray_traced;
 mod receivers;

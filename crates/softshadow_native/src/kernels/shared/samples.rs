@@ -17,6 +17,7 @@ pub(crate) struct Sampling {
     pub(crate) sets: u32,
     /// Pixels of a row, where sets are taken by place; 0 where they are drawn.
     pub(crate) row: u32,
+    /// Of the block, among all of the call.
     pub(crate) first_receiver: u32,
 }
 
