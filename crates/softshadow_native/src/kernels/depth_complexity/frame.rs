@@ -24,7 +24,8 @@ pub(super) struct LightFrame {
     pub(super) x_way: Vec3,
     pub(super) sample_count: u32,
     pub(super) y_way: Vec3,
-    reserved0: u32,
+    /// Standard silhouettes: the reference point says on which side of a face an edge is.
+    pub(super) weighs_from_light: u32,
     pub(super) reference: Vec2,
     pub(super) low: Vec2,
     pub(super) high: Vec2,

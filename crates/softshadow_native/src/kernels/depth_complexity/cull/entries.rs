@@ -4,6 +4,7 @@ use fearless_simd::{Simd, f32x8, mask32x8, prelude::*, u32x8};
 use glam::Vec3;
 
 use super::super::eight_edges::{EightEdges, EightFaces, Sides, first_lanes};
+use super::super::frame::LightFrame;
 use super::super::occluders::{IncidentFace, OccluderEdge};
 use super::super::shaft::Planes;
 use super::super::tiles::EDGE_BITS;
@@ -91,6 +92,8 @@ pub(super) struct ShaftInLanes<S: Simd> {
     middle: Vec3x8<S>,
     half: Vec3x8<S>,
     size: Vec3x8<S>,
+    /// Not where the light says on which side of its faces an edge is: then no receiver's view leaves any out.
+    knows_sides: mask32x8<S>,
 }
 
 /// What a shaft's list takes of eight edges, and which side of their faces all its receivers are on.
@@ -101,7 +104,7 @@ struct Taken<S: Simd> {
 
 impl<S: Simd> ShaftInLanes<S> {
     #[inline(always)]
-    pub(super) fn new(simd: S, shaft: &Shaft) -> Self {
+    pub(super) fn new(simd: S, frame: &LightFrame, shaft: &Shaft) -> Self {
         let mut planes = [(Vec3x8::splat(simd, Vec3::ZERO), f32x8::splat(simd, 0.0)); 5];
         for (in_lanes, plane) in planes.iter_mut().zip(&shaft.planes) {
             *in_lanes = (Vec3x8::splat(simd, plane.truncate()), f32x8::splat(simd, plane.w));
@@ -111,6 +114,7 @@ impl<S: Simd> ShaftInLanes<S> {
             middle: Vec3x8::splat(simd, shaft.middle),
             half: Vec3x8::splat(simd, shaft.half),
             size: Vec3x8::splat(simd, shaft.middle.abs() + shaft.half),
+            knows_sides: mask32x8::splat(simd, frame.weighs_from_light == 0),
         }
     }
 
@@ -141,7 +145,7 @@ impl<S: Simd> ShaftInLanes<S> {
         }
         let (a, b) = (self.side(&edges.faces[0]), self.side(&edges.faces[1]));
         // What it adds on one side it takes away on the other.
-        let cancels = edges.are_pairs() & a.are_opposite(b);
+        let cancels = edges.are_pairs() & a.are_opposite(b) & self.knows_sides;
         Some(Taken { edges: meets & !cancels, sides: [a, b] })
     }
 
@@ -159,7 +163,7 @@ impl<S: Simd> ShaftInLanes<S> {
         let edges = kept.load(simd);
         let Some(taken) = self.taken(simd, kept, &edges) else { return };
         let [a, b] = taken.sides;
-        let are_known = edges.incidence_count.simd_le(2) & a.are_known() & b.are_known();
+        let are_known = edges.incidence_count.simd_le(2) & a.are_known() & b.are_known() & self.knows_sides;
         // A pair that was not left out has both faces on one side.
         let size = edges.are_pairs().select(u32x8::splat(simd, 2), u32x8::splat(simd, 1));
         let weight_and_four = a.above.select(size + 4, 4 - size);

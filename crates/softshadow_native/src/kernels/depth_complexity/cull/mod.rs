@@ -16,6 +16,7 @@ use fearless_simd::{Simd, dispatch};
 use rayon::prelude::*;
 
 use super::clusters::{Cluster, ClusterRange};
+use super::frame::LightFrame;
 use super::tiles::{HEAD, TilePart, count};
 use crate::engine::Call;
 use crate::kernels::records;
@@ -30,7 +31,7 @@ const PARTS: usize = 16;
 
 pub(super) fn cull(call: &mut Call) {
     let (items, level) = (call.item_range(), call.level);
-    let range: ClusterRange = call.uniform("cluster_range");
+    let (frame, range): (LightFrame, ClusterRange) = (call.uniform("light_frame"), call.uniform("cluster_range"));
     let [edges, incident_faces, clusters, groups, parts, lists, counts] =
         call.buffers(["edges", "incident_faces", "clusters", "groups_of_clusters", "parts", "lists", "counts"]);
     let clusters = &records::<Cluster>(clusters)[..range.cluster_count as usize];
@@ -41,16 +42,16 @@ pub(super) fn cull(call: &mut Call) {
         let part = &parts[index];
         if part.receiver_count > 0 && part.has_faces > 0 {
             list.clear();
-            dispatch!(level, simd => list_edges(simd, &stock, part, list));
+            dispatch!(level, simd => list_edges(simd, &frame, &stock, part, list));
             finish(&lists, index, part.receiver_count, list);
         }
     });
 }
 
 #[inline(always)]
-fn list_edges<S: Simd>(simd: S, stock: &Stock, part: &TilePart, list: &mut Vec<u32>) {
+fn list_edges<S: Simd>(simd: S, frame: &LightFrame, stock: &Stock, part: &TilePart, list: &mut Vec<u32>) {
     let shaft = Shaft { planes: part.planes, middle: (part.low + part.high) * 0.5, half: (part.high - part.low) * 0.5 };
-    let in_lanes = ShaftInLanes::new(simd, &shaft);
+    let in_lanes = ShaftInLanes::new(simd, frame, &shaft);
     stock.visit(simd, &shaft.planes, |kept| in_lanes.list_edges(simd, kept, list));
 }
 

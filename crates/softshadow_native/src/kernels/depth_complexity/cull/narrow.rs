@@ -63,7 +63,7 @@ fn narrow_part<S: Simd>(simd: S, narrow: &Narrow<'_>, head: usize, scratch: &mut
         let list = &mut scratch.of_bundle;
         list.clear();
         if bundle.receiver_count > 0 {
-            let shaft = ShaftInLanes::new(simd, &bundle.shaft);
+            let shaft = ShaftInLanes::new(simd, &tiles.frame, &bundle.shaft);
             for kept in &scratch.kept {
                 shaft.list_entries(simd, kept, list);
             }
