@@ -218,7 +218,7 @@ impl NativeEngine {
                     // Its size is known only now, and blocks bound it.
                     Over::Indirect(id) => (buffers[id.index()][..3].iter().product(), 0),
                 };
-                let most = WORK_PER_SLICE.checked_div(each).unwrap_or(u64::MAX).next_multiple_of(1024);
+                let most = WORK_PER_SLICE.checked_div(each).map_or(u64::MAX, |most| most.next_multiple_of(1024));
                 let most = u32::try_from(most).unwrap_or(u32::MAX);
                 let mut first = 0;
                 while first < count {

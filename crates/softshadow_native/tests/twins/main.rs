@@ -1,4 +1,5 @@
 //! Twins against their WGSL: the same programs on Mesa's software driver and natively, compared buffer by buffer.
 
+mod fold;
 mod harness;
 mod receivers;

@@ -1,19 +1,35 @@
 //! Twins of the kernels of `depth_complexity`.
 
-#[expect(dead_code, reason = "its kernels are on their way")]
+mod area;
+mod attenuation;
 mod clusters;
-#[expect(dead_code, reason = "its kernels are on their way")]
+mod counters;
+mod cover;
+mod coverage;
+mod coverage_table;
 mod edge;
-#[expect(dead_code, reason = "its kernels are on their way")]
+mod fold;
 mod frame;
-#[expect(dead_code, reason = "its kernels are on their way")]
+mod horizon;
+mod lists;
 mod occluders;
-#[expect(dead_code, reason = "its kernels are on their way")]
+mod reference_depth;
+mod sums;
 mod tiles;
+mod walk;
 
 use super::Twin;
 
 pub(super) fn twin(file: &str, entry: &str) -> Option<Twin> {
-    let _ = (file, entry);
-    None
+    Some(match (file, entry) {
+        ("fold", "fold") => fold::fold,
+        ("fold", "fold_areas") => fold::fold_areas,
+        ("fold", "fold_own_samples") => fold::fold_own_samples,
+        ("fold", "fold_own_samples_areas") => fold::fold_own_samples_areas,
+        ("fold", "fold_attenuated") => fold::fold_attenuated,
+        ("fold", "fold_attenuated_own_samples") => fold::fold_attenuated_own_samples,
+        ("reference_depth", "reference_depth") => reference_depth::reference_depth,
+        ("reference_depth", "reference_depth_attenuated") => reference_depth::reference_depth_attenuated,
+        _ => return None,
+    })
 }

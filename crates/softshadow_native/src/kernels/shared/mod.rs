@@ -2,4 +2,5 @@
 
 pub(crate) mod hierarchy;
 pub(crate) mod receiver;
+pub(crate) mod samples;
 pub(crate) mod triangle;
