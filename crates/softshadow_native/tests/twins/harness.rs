@@ -107,6 +107,14 @@ impl Call {
         }
     }
 
+    /// Compares what each chosen pass of the first stage leaves, run alone on what the device left before it.
+    pub(crate) fn compare_alone(&self, chosen: impl Fn(&str) -> bool, same: impl Fn(&str) -> Same) {
+        let native = NativeEngine::new(NativeSettings::default());
+        if let Some(difference) = self.difference_alone(&native, chosen, &same) {
+            panic!("{difference}");
+        }
+    }
+
     /// Compares what the first passes of the first stage leave.
     pub(crate) fn compare_first(&self, passes: usize, same: impl Fn(&str) -> Same) {
         let native = NativeEngine::new(NativeSettings::default());
@@ -132,6 +140,35 @@ impl Call {
         end: Option<(usize, usize)>,
         same: &impl Fn(&str) -> Same,
     ) -> Option<String> {
+        self.with_program(|program, contents| difference(program, contents, engines, end, same))
+    }
+
+    /// The first difference between the device and another engine that runs each chosen pass of the first stage alone, on what the device
+    /// left before it.
+    pub(crate) fn difference_alone(
+        &self,
+        native: &dyn Engine,
+        chosen: impl Fn(&str) -> bool,
+        same: &impl Fn(&str) -> Same,
+    ) -> Option<String> {
+        self.with_program(|program, contents| {
+            let Step::Run(stage) = program.step(0, &[]) else { unreachable!("a program has a stage") };
+            let passes = stage.plan.passes.iter().enumerate().filter(|(_, pass)| chosen(&pass.label));
+            let passes: Vec<usize> = passes.map(|(at, _)| at).collect();
+            assert!(!passes.is_empty(), "no such pass");
+            passes.into_iter().find_map(|at| {
+                let [before, after] =
+                    [at, at + 1].map(|end| outputs(device(), program, contents, Some((0, end))).remove(0));
+                let ours = outputs(native, &alone(&stage, at, &before), contents, None).remove(1);
+                let after = after.into_iter().filter(|(label, _)| ours.contains_key(label)).collect();
+                let words = differing(&after, &ours, same)?;
+                Some(format!("'{}' alone: {words}", stage.plan.passes[at].label))
+            })
+        })
+    }
+
+    /// The program of the call, and what it uploads.
+    fn with_program<T>(&self, run: impl FnOnce(&dyn Program, &Contents) -> T) -> T {
         let occluders: Vec<Arc<OccluderContents>> = if self.technique.wants_occluders() {
             let local = &self.scene.local;
             let of = |light| Arc::new(OccluderContents::new(local, boundary_of(local, light)).unwrap());
@@ -155,22 +192,33 @@ impl Call {
         program.check().unwrap();
         let contents = self.scene.contents().chain(occluders.iter().flat_map(|o| o.contents()));
         let contents: BTreeMap<ContentKey, Content> = contents.map(|c| (c.key, c.clone())).collect();
-        let program = Part { program: &program, until: self.until, without: self.without };
-        let whole = engines.map(|engine| outputs(engine, &program, &contents, end));
-        let stage = (0..whole[0].len()).find(|i| differing(&whole[0][*i], &whole[1][*i], same).is_some())?;
-        let Step::Run(broken) = program.step(stage, &[]) else { unreachable!("it ran") };
-        // Which pass was the first to go astray.
-        let after = |passes| {
-            let [theirs, ours] =
-                engines.map(|engine| outputs(engine, &program, &contents, Some((stage, passes))).remove(stage));
-            differing(&theirs, &ours, same)
-        };
-        let last = end.map_or(broken.plan.passes.len(), |(_, passes)| passes);
-        let first = (1..=last).find_map(|passes| Some((passes, after(passes)?)));
-        let (passes, words) =
-            first.unwrap_or_else(|| (last, differing(&whole[0][stage], &whole[1][stage], same).unwrap_or_default()));
-        Some(format!("stage {stage}, after '{}': {words}", broken.plan.passes[passes - 1].label))
+        run(&Part { program: &program, until: self.until, without: self.without }, &contents)
     }
+}
+
+type Contents = BTreeMap<ContentKey, Content>;
+
+fn difference(
+    program: &dyn Program,
+    contents: &Contents,
+    engines: [&dyn Engine; 2],
+    end: Option<(usize, usize)>,
+    same: &impl Fn(&str) -> Same,
+) -> Option<String> {
+    let whole = engines.map(|engine| outputs(engine, program, contents, end));
+    let stage = (0..whole[0].len()).find(|i| differing(&whole[0][*i], &whole[1][*i], same).is_some())?;
+    let Step::Run(broken) = program.step(stage, &[]) else { unreachable!("it ran") };
+    // Which pass was the first to go astray.
+    let after = |passes| {
+        let [theirs, ours] =
+            engines.map(|engine| outputs(engine, program, contents, Some((stage, passes))).remove(stage));
+        differing(&theirs, &ours, same)
+    };
+    let last = end.map_or(broken.plan.passes.len(), |(_, passes)| passes);
+    let first = (1..=last).find_map(|passes| Some((passes, after(passes)?)));
+    let (passes, words) =
+        first.unwrap_or_else(|| (last, differing(&whole[0][stage], &whole[1][stage], same).unwrap_or_default()));
+    Some(format!("stage {stage}, after '{}': {words}", broken.plan.passes[passes - 1].label))
 }
 
 /// A program whose stages end before a pass, and leave others out.
@@ -192,6 +240,36 @@ impl Program for Part<'_> {
         passes.retain(|pass| !self.without.contains(&pass.label.as_str()));
         Step::Run(stage)
     }
+}
+
+/// One pass of a stage, on buffers that already hold something.
+struct Alone([Stage; 2]);
+
+impl Program for Alone {
+    fn step(&self, index: usize, _: &[u32]) -> Step {
+        let Some(Stage { plan, values }) = self.0.get(index) else { return Step::Done };
+        Step::run(plan.clone(), values.clone())
+    }
+}
+
+/// A pass alone. What passes before it wrote is given as parameters to a stage without passes: the native engine keeps buffers by their
+/// labels from stage to stage, whatever made them.
+fn alone(stage: &Stage, pass: usize, before: &Buffers) -> Alone {
+    let Stage { plan, values } = stage;
+    let (mut plan, mut given, mut contents) = (plan.clone(), Plan::new("what came before"), values.clone());
+    contents.clear();
+    let pass = plan.passes.swap_remove(pass);
+    plan.passes = vec![pass];
+    for resource in &mut plan.resources {
+        if let Some(words) = before.get(&resource.label) {
+            resource.origin = Origin::Persistent;
+            let bytes: &[u8] = bytemuck::cast_slice(words);
+            given.parameter(resource.label.clone(), bytes.len() as u64);
+            contents.insert(resource.label.clone(), bytes.to_vec());
+        }
+    }
+    plan.outputs = written(&plan);
+    Alone([Stage { plan: given, values: contents }, Stage { plan, values: values.clone() }])
 }
 
 /// A program whose stages give out every buffer that their passes write; one stage may end early.
@@ -241,7 +319,7 @@ pub(crate) type Buffers = BTreeMap<String, Vec<u32>>;
 pub(crate) fn outputs(
     engine: &dyn Engine,
     program: &dyn Program,
-    contents: &BTreeMap<ContentKey, Content>,
+    contents: &Contents,
     cut: Option<(usize, usize)>,
 ) -> Vec<Buffers> {
     let mut found = Vec::new();

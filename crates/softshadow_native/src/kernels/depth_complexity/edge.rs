@@ -19,11 +19,23 @@ pub(super) struct EdgeImage<S: Simd> {
     pub(super) left: mask32x8<S>,
 }
 
+// Closures in these functions would be functions of their own without the processor's vectors: small functions stand in their place.
+
+#[inline(always)]
+fn high_half<S: Simd>(simd: S, v: f32x8<S>) -> f32x8<S> {
+    f32x8::from_bits(v.to_bits() & u32x8::splat(simd, 0xffff_f000))
+}
+
+/// Sum of the sizes along the axes.
+#[inline(always)]
+fn size<S: Simd>(v: Vec3x8<S>) -> f32x8<S> {
+    v.x.abs() + v.y.abs() + v.z.abs()
+}
+
 /// What a rounded product leaves out, exactly: halves of twelve bits have products without rounding.
 #[inline(always)]
 fn product_error<S: Simd>(simd: S, a: f32x8<S>, b: f32x8<S>, rounded: f32x8<S>) -> f32x8<S> {
-    let high_half = |v: f32x8<S>| f32x8::from_bits(v.to_bits() & u32x8::splat(simd, 0xffff_f000));
-    let (a_high, b_high) = (high_half(a), high_half(b));
+    let (a_high, b_high) = (high_half(simd, a), high_half(simd, b));
     let (a_low, b_low) = (a - a_high, b - b_high);
     ((a_high * b_high - rounded) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
@@ -45,7 +57,6 @@ fn is_left<S: Simd>(simd: S, a: Vec2x8<S>, b: Vec2x8<S>) -> mask32x8<S> {
 pub(super) fn edge_image<S: Simd>(simd: S, view: &FrameView<S>, edge: &OccluderEdge) -> EdgeImage<S> {
     let low = view.project(Vec3x8::splat(simd, edge.low) - view.position);
     let high = view.project(Vec3x8::splat(simd, edge.high) - view.position);
-    let size = |v: Vec3x8<S>| v.x.abs() + v.y.abs() + v.z.abs();
     let nearer = Vec3x8::select(size(low).simd_le(size(high)), low, high);
     let line = nearer.cross(view.project(Vec3x8::splat(simd, edge.high - edge.low)));
     EdgeImage { low, high, line, left: is_left(simd, [low.x, low.y], [high.x, high.y]) }
@@ -74,19 +85,17 @@ pub(super) fn before_limit<S: Simd>(
     if !view.limited {
         return image;
     }
-    let depth = |v| view.towards.dot(Vec3x8::splat(simd, v) - view.position);
-    let (low, high) = (depth(edge.low), depth(edge.high));
+    let low = view.towards.dot(Vec3x8::splat(simd, edge.low) - view.position);
+    let high = view.towards.dot(Vec3x8::splat(simd, edge.high) - view.position);
     let (low_is_before, high_is_before) = (low.simd_lt(view.limit), high.simd_lt(view.limit));
     let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
     let span = high - low;
     let t = (view.limit - low) / span.simd_eq(zero).select(one, span);
     let cut = image.low + (image.high - image.low).scale(t);
     let nothing = Vec3x8::new(zero, zero, zero);
-    let ends =
-        |is_before, other_is_before, end| Vec3x8::select(is_before, end, Vec3x8::select(other_is_before, cut, nothing));
     EdgeImage {
-        low: ends(low_is_before, high_is_before, image.low),
-        high: ends(high_is_before, low_is_before, image.high),
+        low: Vec3x8::select(low_is_before, image.low, Vec3x8::select(high_is_before, cut, nothing)),
+        high: Vec3x8::select(high_is_before, image.high, Vec3x8::select(low_is_before, cut, nothing)),
         ..image
     }
 }

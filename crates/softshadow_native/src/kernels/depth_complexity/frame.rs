@@ -66,34 +66,34 @@ impl LightFrame {
     #[inline(always)]
     pub(super) fn view<S: Simd>(&self, simd: S, position: Vec3x8<S>) -> FrameView<S> {
         let c = self.reference;
-        let splat = |v| Vec3x8::splat(simd, v);
         let zero = f32x8::splat(simd, 0.0);
-        let [x_row, y_row, z_row] = [self.x_row, self.y_row, self.z_row].map(splat);
+        let x_row = Vec3x8::splat(simd, self.x_row);
+        let y_row = Vec3x8::splat(simd, self.y_row);
+        let z_row = Vec3x8::splat(simd, self.z_row);
         match self.kind {
             FRAME_FLAT => {
-                let from_light = position - splat(self.origin);
+                let from_light = position - Vec3x8::splat(simd, self.origin);
                 let height = z_row.dot(from_light);
-                let [x_way, y_way] = [self.x_way, self.y_way].map(splat);
                 FrameView {
                     position,
                     exists: height.simd_gt(zero),
                     x_row: x_row.scale(height) - z_row.scale(x_row.dot(from_light) - c.x),
                     y_row: y_row.scale(height) - z_row.scale(y_row.dot(from_light) - c.y),
-                    z_row: splat(-self.z_row),
+                    z_row: Vec3x8::splat(simd, -self.z_row),
                     limited: false,
                     limit: zero,
                     cap: zero,
                     tangent: zero,
                     inside: mask32x8::splat(simd, false),
-                    x_way,
-                    y_way,
-                    way: splat(self.x_way * c.x + self.y_way * c.y) - from_light,
-                    towards: splat(-self.z_row),
+                    x_way: Vec3x8::splat(simd, self.x_way),
+                    y_way: Vec3x8::splat(simd, self.y_way),
+                    way: Vec3x8::splat(simd, self.x_way * c.x + self.y_way * c.y) - from_light,
+                    towards: Vec3x8::splat(simd, -self.z_row),
                 }
             }
             FRAME_SUN => angular_view(simd, position, [x_row, y_row, z_row], f32x8::splat(simd, self.size), c),
             _ => {
-                let way = splat(self.origin) - position;
+                let way = Vec3x8::splat(simd, self.origin) - position;
                 let one = f32x8::splat(simd, 1.0);
                 let squared = way.dot(way).max(f32x8::splat(simd, 1e-37));
                 let sine_squared = f32x8::splat(simd, self.size * self.size) / squared;
@@ -140,7 +140,7 @@ fn angular_view<S: Simd>(
     c: Vec2,
 ) -> FrameView<S> {
     let zero = f32x8::splat(simd, 0.0);
-    let [cx, cy] = [c.x, c.y].map(|c| f32x8::splat(simd, c));
+    let (cx, cy) = (f32x8::splat(simd, c.x), f32x8::splat(simd, c.y));
     let depth = towards.scale(tangent);
     FrameView {
         position,

@@ -71,7 +71,7 @@ impl Masks<'_> {
         let is_receiver = kind.simd_ne(RECEIVER_NONE);
         let sees = is_receiver & view.exists;
         let is_open = sees | (is_receiver & view.inside);
-        let crosses = sees & kind.simd_eq(RECEIVER_SURFACE) & !is_above_horizon(&self.frame, slope);
+        let crosses = sees & !is_above_horizon(&self.frame, kind.simd_eq(RECEIVER_SURFACE), slope);
         let words = self.frame.sample_count.div_ceil(32);
         let unseen = is_open.select(u32x8::splat(simd, 0), u32x8::splat(simd, u32::MAX));
         let mut visible = [0; LANES];
