@@ -52,8 +52,10 @@ pub(crate) struct Call {
     pub(crate) wants: Wants,
     /// Receivers of a block at most.
     pub(crate) block: usize,
-    /// The label of the pass with which every stage ends before it is begun.
+    /// Label of the pass that ends every stage.
     pub(crate) until: Option<&'static str>,
+    /// Labels of passes before it that both engines leave out.
+    pub(crate) without: &'static [&'static str],
 }
 
 /// Where receivers come from.
@@ -81,6 +83,8 @@ pub(crate) enum Same {
     Within(f32),
     /// After both were brought into an order of their own.
     Sorted(fn(&[u32]) -> Vec<Vec<u32>>),
+    /// As what all buffers say together.
+    Said(fn(&Buffers) -> Vec<Vec<u32>>),
     /// Not at all, for this reason.
     #[expect(dead_code, reason = "for twins on their way")]
     Apart(&'static str),
@@ -89,7 +93,7 @@ pub(crate) enum Same {
 impl Call {
     pub(crate) fn new(technique: Technique, scene: &Scene, lights: Vec<Light>, receivers: Source) -> Self {
         let scene = SceneContents::new(LocalScene::new(scene, None, host().limits.storage_binding_bytes));
-        Self { technique, scene, lights, receivers, wants: Wants::default(), block: 1 << 20, until: None }
+        Self { technique, scene, lights, receivers, wants: Wants::default(), block: 1 << 20, until: None, without: &[] }
     }
 
     /// Cuts the scene into parts of so many bytes.
@@ -152,14 +156,15 @@ impl Call {
         program.check().unwrap();
         let contents = self.scene.contents().chain(occluders.iter().flat_map(|o| o.contents()));
         let contents: BTreeMap<ContentKey, Content> = contents.map(|c| (c.key, c.clone())).collect();
-        let program = Until { program: &program, label: self.until };
-        let whole = engines.map(|engine| outputs(engine, &program, &contents, end));
+        let outputs = |engine, cut| {
+            outputs(engine, &Open { program: &program, until: self.until, without: self.without, cut }, &contents)
+        };
+        let whole = engines.map(|engine| outputs(engine, end));
         let stage = (0..whole[0].len()).find(|i| differing(&whole[0][*i], &whole[1][*i], same).is_some())?;
         let Step::Run(broken) = program.step(stage, &[]) else { unreachable!("it ran") };
         // Which pass was the first to go astray.
         let after = |passes| {
-            let [theirs, ours] =
-                engines.map(|engine| outputs(engine, &program, &contents, Some((stage, passes))).remove(stage));
+            let [theirs, ours] = engines.map(|engine| outputs(engine, Some((stage, passes))).remove(stage));
             differing(&theirs, &ours, same)
         };
         let last = end.map_or(broken.plan.passes.len(), |(_, passes)| passes);
@@ -170,28 +175,11 @@ impl Call {
     }
 }
 
-/// A program whose stages end before a pass.
-struct Until<'a> {
-    program: &'a dyn Program,
-    label: Option<&'static str>,
-}
-
-impl Program for Until<'_> {
-    fn step(&self, index: usize, decision: &[u32]) -> Step {
-        let Step::Run(mut stage) = self.program.step(index, decision) else { return Step::Done };
-        if let Some(label) = self.label {
-            let passes = &mut stage.plan.passes;
-            let end = passes.iter().position(|pass| pass.label == label).expect("a pass of this label");
-            passes.truncate(end);
-            stage.plan.decision = None;
-        }
-        Step::Run(stage)
-    }
-}
-
 /// A program whose stages give out every buffer that their passes write; one stage may end early.
 struct Open<'a> {
     program: &'a dyn Program,
+    until: Option<&'a str>,
+    without: &'a [&'a str],
     cut: Option<(usize, usize)>,
 }
 
@@ -207,6 +195,12 @@ impl Program for Open<'_> {
             }
             _ => {}
         }
+        if let Some(until) = self.until {
+            plan.passes
+                .truncate(1 + plan.passes.iter().position(|pass| pass.label == until).unwrap_or(plan.passes.len()));
+            plan.decision = None;
+        }
+        plan.passes.retain(|pass| !self.without.contains(&pass.label.as_str()));
         plan.outputs = written(&plan);
         Step::run(plan, values)
     }
@@ -230,15 +224,10 @@ fn written(plan: &Plan) -> Vec<ResourceId> {
     found
 }
 
-type Buffers = BTreeMap<String, Vec<u32>>;
+pub(crate) type Buffers = BTreeMap<String, Vec<u32>>;
 
 /// What every stage leaves in its buffers.
-fn outputs(
-    engine: &dyn Engine,
-    program: &dyn Program,
-    contents: &BTreeMap<ContentKey, Content>,
-    cut: Option<(usize, usize)>,
-) -> Vec<Buffers> {
+fn outputs(engine: &dyn Engine, program: &Open<'_>, contents: &BTreeMap<ContentKey, Content>) -> Vec<Buffers> {
     let mut found = Vec::new();
     let mut keep = |stage: Option<StageReport>| {
         if let Some(stage) = stage {
@@ -247,12 +236,13 @@ fn outputs(
         }
         true
     };
-    engine.run(&Open { program, cut }, contents, Timing::Device, &mut keep).unwrap();
+    engine.run(program, contents, Timing::Device, &mut keep).unwrap();
     found
 }
 
 fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
     assert!(theirs.keys().eq(ours.keys()), "the same buffers");
+    let all = [theirs, ours];
     theirs.iter().find_map(|(label, theirs)| {
         let ours = &ours[label];
         let close = |within: f32, a: u32, b: u32| {
@@ -263,15 +253,17 @@ fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> 
             Same::Apart(_) => None,
             Same::Bits => first_of(label, theirs, ours, |a, b| a == b),
             Same::Within(most) => first_of(label, theirs, ours, |a, b| close(most, a, b)),
-            Same::Sorted(rows) => {
-                let [mut a, mut b] = [rows(theirs), rows(ours)];
-                a.sort();
-                b.sort();
-                let at = (0..a.len().max(b.len())).find(|i| a.get(*i) != b.get(*i))?;
-                Some(format!("'{label}', row {at}: {:?} there, {:?} here", a.get(at), b.get(at)))
-            }
+            Same::Sorted(rows) => first_row(label, [rows(theirs), rows(ours)]),
+            Same::Said(rows) => first_row(label, all.map(rows)),
         }
     })
+}
+
+fn first_row(label: &str, mut rows: [Vec<Vec<u32>>; 2]) -> Option<String> {
+    rows.iter_mut().for_each(|rows| rows.sort());
+    let [a, b] = rows;
+    let at = (0..a.len().max(b.len())).find(|i| a.get(*i) != b.get(*i))?;
+    Some(format!("'{label}', row {at}: {:?} there, {:?} here", a.get(at), b.get(at)))
 }
 
 fn first_of(label: &str, theirs: &[u32], ours: &[u32], same: impl Fn(u32, u32) -> bool) -> Option<String> {

@@ -1,19 +1,44 @@
 //! Twins of the kernels of `depth_complexity`.
 
-#[expect(dead_code, reason = "its kernels are on their way")]
+mod bound_clusters;
+mod bound_tiles;
 mod clusters;
+mod cull;
 #[expect(dead_code, reason = "its kernels are on their way")]
 mod edge;
-#[expect(dead_code, reason = "its kernels are on their way")]
+mod eight_edges;
+mod find_faces;
 mod frame;
+mod horizon;
 #[expect(dead_code, reason = "its kernels are on their way")]
 mod occluders;
+mod open_masks;
+mod positions;
+mod sample_sets;
+mod shaft;
+mod silhouettes;
+mod size_fold;
+mod spread_reference;
 #[expect(dead_code, reason = "its kernels are on their way")]
 mod tiles;
+mod tree;
 
 use super::Twin;
 
 pub(super) fn twin(file: &str, entry: &str) -> Option<Twin> {
-    let _ = (file, entry);
-    None
+    Some(match (file, entry) {
+        ("bound_clusters", "bound_clusters") => bound_clusters::bound_clusters,
+        ("bound_tiles", "bound_tiles") => bound_tiles::bound_tiles,
+        ("cull", "cull") => cull::cull,
+        ("cull", "list_faces") => cull::list_faces,
+        ("cull", "narrow") => cull::narrow,
+        ("find_faces", "find_faces") => find_faces::find_faces,
+        ("open_masks", "open_masks") => open_masks::open_masks,
+        ("open_masks", "open_masks_of_sets") => open_masks::open_masks_of_sets,
+        ("silhouettes", "silhouettes") => silhouettes::silhouettes,
+        ("silhouettes", "standard_silhouettes") => silhouettes::standard_silhouettes,
+        ("size_fold", "size_fold") => size_fold::size_fold,
+        ("spread_reference", "spread_reference") => spread_reference::spread_reference,
+        _ => return None,
+    })
 }

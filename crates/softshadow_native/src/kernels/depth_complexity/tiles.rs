@@ -65,7 +65,7 @@ pub(super) fn first_chunk_word(tile_count: usize) -> usize {
     2 * HEAD * tile_count
 }
 
-const EDGE_BITS: u32 = 29;
+pub(super) const EDGE_BITS: u32 = 29;
 pub(super) const NO_ENTRY: u32 = u32::MAX;
 
 /// An entry: an edge and its weight, −2 to 2, 0 where each receiver finds its own.
