@@ -208,16 +208,16 @@ fn difference(
     let whole = engines.map(|engine| outputs(engine, program, contents, end));
     let stage = (0..whole[0].len()).find(|i| differing(&whole[0][*i], &whole[1][*i], same).is_some())?;
     let Step::Run(broken) = program.step(stage, &[]) else { unreachable!("it ran") };
-    // Which pass was the first to go astray.
+    // Which pass was the first to go astray for good: where the device goes on in another pass, twins are ahead of it for a while.
     let after = |passes| {
         let [theirs, ours] =
             engines.map(|engine| outputs(engine, program, contents, Some((stage, passes))).remove(stage));
         differing(&theirs, &ours, same)
     };
     let last = end.map_or(broken.plan.passes.len(), |(_, passes)| passes);
-    let first = (1..=last).find_map(|passes| Some((passes, after(passes)?)));
-    let (passes, words) =
-        first.unwrap_or_else(|| (last, differing(&whole[0][stage], &whole[1][stage], same).unwrap_or_default()));
+    let whole = (last, differing(&whole[0][stage], &whole[1][stage], same).unwrap_or_default());
+    let astray = (1..=last).rev().map_while(|passes| Some((passes, after(passes)?))).last();
+    let (passes, words) = astray.unwrap_or(whole);
     Some(format!("stage {stage}, after '{}': {words}", broken.plan.passes[passes - 1].label))
 }
 

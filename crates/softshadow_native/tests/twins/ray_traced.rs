@@ -19,7 +19,7 @@ fn same(label: &str) -> Same {
 
 fn call(settings: RayTraced, scene: &Scene, lights: Vec<Light>, receivers: Source) -> Call {
     let call = Call::new(Technique::RayTraced(settings), scene, lights, receivers);
-    Call { until: Some("resolve"), ..call }
+    Call { until: Some("resolve"), without: &["resolve"], ..call }
 }
 
 fn agrees(call: &Call, case: &str) {

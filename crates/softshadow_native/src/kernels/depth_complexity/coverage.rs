@@ -1,6 +1,6 @@
 //! The twin of `depth_complexity/coverage.wgsl`: which samples the edge of eight receivers covers.
 
-use fearless_simd::{Simd, mask32x8, prelude::*};
+use fearless_simd::{Simd, f32x8, mask32x8, prelude::*};
 
 use super::edge::{EdgeImage, Vec2x8};
 use crate::kernels::lanes::Vec3x8;
@@ -35,6 +35,16 @@ impl<S: Simd> Crossing<S> {
             line: image.line,
             beyond_left: image.line_left(simd, [low, high]),
         }
+    }
+
+    /// Whether the ways of eight receivers to a sample each cross it.
+    #[inline(always)]
+    pub(super) fn crosses(&self, simd: S, [x, y]: Vec2x8<S>) -> mask32x8<S> {
+        let zero = f32x8::splat(simd, 0.0);
+        let starts = (self.from[0] * y - self.from[1] * x).simd_ge(zero);
+        let ends = (self.to[0] * y - self.to[1] * x).simd_lt(zero);
+        let is_left = (self.line.x * x + self.line.y * y + self.line.z).simd_ge(zero);
+        starts & ends & (is_left ^ self.beyond_left)
     }
 
     #[inline(always)]

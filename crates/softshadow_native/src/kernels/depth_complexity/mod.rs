@@ -2,11 +2,14 @@
 
 mod area;
 mod attenuation;
+mod beam;
 mod bound_clusters;
 mod bound_tiles;
+mod bundles;
 mod clusters;
 mod counters;
 mod cover;
+mod cover_faces;
 mod coverage;
 mod coverage_table;
 mod cull;
@@ -15,19 +18,23 @@ mod eight_edges;
 mod find_faces;
 mod fold;
 mod frame;
+mod hider;
 mod horizon;
 mod lists;
 mod occluders;
 mod open_masks;
 mod positions;
 mod reference_depth;
+mod sample_bins;
 mod sample_sets;
 mod shaft;
+mod sides;
 mod silhouettes;
 mod size_fold;
 mod spread_reference;
 mod sums;
 mod tiles;
+mod touching;
 mod tree;
 mod walk;
 
@@ -37,6 +44,7 @@ pub(super) fn twin(file: &str, entry: &str) -> Option<Twin> {
     Some(match (file, entry) {
         ("bound_clusters", "bound_clusters") => bound_clusters::bound_clusters,
         ("bound_tiles", "bound_tiles") => bound_tiles::bound_tiles,
+        ("cover_faces", "cover_faces" | "cover_moving") => cover_faces::cover_faces,
         ("cull", "cull") => cull::cull,
         ("cull", "list_faces") => cull::list_faces,
         ("cull", "narrow") => cull::narrow,
@@ -55,6 +63,7 @@ pub(super) fn twin(file: &str, entry: &str) -> Option<Twin> {
         ("silhouettes", "standard_silhouettes") => silhouettes::standard_silhouettes,
         ("size_fold", "size_fold") => size_fold::size_fold,
         ("spread_reference", "spread_reference") => spread_reference::spread_reference,
+        ("touching", "try_touching") => touching::try_touching,
         _ => return None,
     })
 }

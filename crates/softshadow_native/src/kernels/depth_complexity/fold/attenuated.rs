@@ -117,7 +117,7 @@ fn weight_of_both<S: Simd>(
 ) -> [i32x8<S>; 2] {
     let [mut opaque, mut attenuation] = [i32x8::splat(simd, 0); 2];
     for face in stock.faces_at(edge) {
-        let left = eight.left_of(simd, face);
+        let left = eight.left_of(simd, &stock.frame, face);
         match triangles[(face.reference >> 1) as usize] {
             OPAQUE => opaque += left,
             units => attenuation += left * i32x8::splat(simd, units as i32),

@@ -20,7 +20,8 @@ use super::edge::{EdgeImage, before_limit, edge_image, image_matters};
 use super::frame::{FrameView, LightFrame};
 use super::horizon::{horizon_slope, is_above_horizon};
 use super::lists::{Bundle, entries};
-use super::occluders::{IncidentFace, OccluderEdge, side_of_plane};
+use super::occluders::{IncidentFace, OccluderEdge};
+use super::sides::weighing_side;
 use super::tiles::{BUNDLE, BUNDLES, HEAD, TILE, count, first_chunk_word, listed_edge};
 use crate::engine::{atomic_words, shared};
 use crate::kernels::lanes::Vec3x8;
@@ -161,11 +162,10 @@ impl<S: Simd> Eight<S> {
         self.above_bits >> lane & 1 != 0
     }
 
-    /// The side of a face at its edge, turned the way that this goes; 0 on the face itself.
+    /// The side by which a face weighs; 0 on the face itself.
     #[inline(always)]
-    fn left_of(&self, simd: S, face: &IncidentFace) -> i32x8<S> {
-        let side = side_of_plane(simd, face.normal, face.point, face.flatness, self.view.position);
-        let turned = if face.reference & 1 != 0 { -side } else { side };
+    fn left_of(&self, simd: S, frame: &LightFrame, face: &IncidentFace) -> i32x8<S> {
+        let turned = weighing_side(simd, frame, &self.view, face);
         let own = self.triangles.simd_eq(u32x8::splat(simd, face.reference >> 1));
         own.select(i32x8::splat(simd, 0), turned)
     }

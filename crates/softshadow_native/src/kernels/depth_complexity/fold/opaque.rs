@@ -151,7 +151,7 @@ fn fold_part<S: Simd, T: Samples<S>>(
 fn weight<S: Simd>(simd: S, stock: &Stock<'_>, eight: &Eight<S>, edge: &OccluderEdge) -> i32x8<S> {
     let mut sum = i32x8::splat(simd, 0);
     for face in stock.faces_at(edge) {
-        sum += eight.left_of(simd, face);
+        sum += eight.left_of(simd, &stock.frame, face);
     }
     sum
 }
