@@ -2,8 +2,11 @@
 //!
 //! Eight whatever the processor has, because receivers come in bundles of eight: so no result depends on the width of its vectors. Nothing
 //! is fused or reordered either. Lanes that do not take part compute along, and what they find is masked.
+//!
+//! Vectors are computed in loops, not in closures given to `map` or `from_fn`: those are compiled on their own, without the processor's
+//! instructions, and every operation in them becomes a call (lists took three times as long).
 
-use fearless_simd::{f32x8, mask32x8, prelude::*};
+use fearless_simd::{f32x8, mask32x8, prelude::*, u32x8};
 use glam::Vec3;
 
 /// Lanes.
@@ -66,6 +69,29 @@ impl<S: Simd> Vec3x8<S> {
     }
 
     #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        Self { x: self.x.abs(), y: self.y.abs(), z: self.z.abs() }
+    }
+
+    /// Sum of the components.
+    #[inline(always)]
+    pub(crate) fn sum(self) -> f32x8<S> {
+        self.x + self.y + self.z
+    }
+
+    /// The smallest of all lanes.
+    #[inline(always)]
+    pub(crate) fn reduce_min(self) -> Vec3 {
+        Vec3::new(self.x.reduce_min(), self.y.reduce_min(), self.z.reduce_min())
+    }
+
+    /// The largest of all lanes.
+    #[inline(always)]
+    pub(crate) fn reduce_max(self) -> Vec3 {
+        Vec3::new(self.x.reduce_max(), self.y.reduce_max(), self.z.reduce_max())
+    }
+
+    #[inline(always)]
     pub(crate) fn min(self, other: Self) -> Self {
         Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
     }
@@ -103,4 +129,22 @@ impl<S: Simd> std::ops::Mul for Vec3x8<S> {
     fn mul(self, other: Self) -> Self {
         Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
     }
+}
+
+/// Eight records of eight words, word by word: lane `k` of vector `i` is word `i` of record `k`.
+#[inline(always)]
+pub(crate) fn transposed<S: Simd>(simd: S, record: impl Fn(usize) -> [u32; LANES]) -> [u32x8<S>; LANES] {
+    let mut words = [u32x8::splat(simd, 0); LANES];
+    for (k, row) in words.iter_mut().enumerate() {
+        *row = u32x8::load_array(simd, record(k));
+    }
+    // Three times halves are zipped: word `i` of record `k` moves from place 8k + i to 8i + k.
+    for _ in 0..3 {
+        let before = words;
+        for i in 0..LANES / 2 {
+            words[2 * i] = before[i].zip_low(before[i + 4]);
+            words[2 * i + 1] = before[i].zip_high(before[i + 4]);
+        }
+    }
+    words
 }

@@ -52,6 +52,10 @@ pub(crate) struct Call {
     pub(crate) wants: Wants,
     /// Receivers of a block at most.
     pub(crate) block: usize,
+    /// Label of the pass that ends every stage.
+    pub(crate) until: Option<&'static str>,
+    /// Labels of passes before it that both engines leave out.
+    pub(crate) without: &'static [&'static str],
 }
 
 /// Where receivers come from.
@@ -78,6 +82,8 @@ pub(crate) enum Same {
     Within(f32),
     /// After both were brought into an order of their own.
     Sorted(fn(&[u32]) -> Vec<Vec<u32>>),
+    /// As what all buffers say together.
+    Said(fn(&Buffers) -> Vec<Vec<u32>>),
     /// Not at all, for this reason.
     Apart(&'static str),
 }
@@ -85,7 +91,7 @@ pub(crate) enum Same {
 impl Call {
     pub(crate) fn new(technique: Technique, scene: &Scene, lights: Vec<Light>, receivers: Source) -> Self {
         let scene = SceneContents::new(LocalScene::new(scene, None, host().limits.storage_binding_bytes));
-        Self { technique, scene, lights, receivers, wants: Wants::default(), block: 1 << 20 }
+        Self { technique, scene, lights, receivers, wants: Wants::default(), block: 1 << 20, until: None, without: &[] }
     }
 
     /// Cuts the scene into parts of so many bytes.
@@ -123,7 +129,7 @@ impl Call {
         end: Option<(usize, usize)>,
         same: &impl Fn(&str) -> Same,
     ) -> Option<String> {
-        self.with_program(|program, contents| difference(program, contents, native, end, same))
+        self.with_program(|open, contents| difference(open, contents, native, end, same))
     }
 
     /// The first difference between the device and another engine that runs each chosen pass of the first stage alone, on what the device
@@ -134,15 +140,15 @@ impl Call {
         chosen: impl Fn(&str) -> bool,
         same: &impl Fn(&str) -> Same,
     ) -> Option<String> {
-        self.with_program(|program, contents| {
-            let Step::Run(stage) = program.step(0, &[]) else { unreachable!("a program has a stage") };
+        self.with_program(|open, contents| {
+            let Step::Run(stage) = open.program.step(0, &[]) else { unreachable!("a program has a stage") };
             let passes = stage.plan.passes.iter().enumerate().filter(|(_, pass)| chosen(&pass.label));
             let passes: Vec<usize> = passes.map(|(at, _)| at).collect();
             assert!(!passes.is_empty(), "no such pass");
             passes.into_iter().find_map(|at| {
                 let [before, after] =
-                    [at, at + 1].map(|end| outputs(device(), program, contents, Some((0, end))).remove(0));
-                let ours = outputs(native, &alone(&stage, at, &before), contents, None).remove(1);
+                    [at, at + 1].map(|end| outputs(device(), &open.cut_at(0, end), contents).remove(0));
+                let ours = outputs(native, &Open::whole(&alone(&stage, at, &before)), contents).remove(1);
                 let after = after.into_iter().filter(|(label, _)| ours.contains_key(label)).collect();
                 let words = differing(&after, &ours, same)?;
                 Some(format!("'{}' alone: {words}", stage.plan.passes[at].label))
@@ -151,7 +157,7 @@ impl Call {
     }
 
     /// The program of the call, and what it uploads.
-    fn with_program<T>(&self, run: impl FnOnce(&dyn Program, &Contents) -> T) -> T {
+    fn with_program<T>(&self, run: impl FnOnce(Open<'_>, &Contents) -> T) -> T {
         let occluders: Vec<Arc<OccluderContents>> = if self.technique.wants_occluders() {
             let local = &self.scene.local;
             let of = |light| Arc::new(OccluderContents::new(local, boundary_of(local, light)).unwrap());
@@ -175,26 +181,27 @@ impl Call {
         program.check().unwrap();
         let contents = self.scene.contents().chain(occluders.iter().flat_map(|o| o.contents()));
         let contents: BTreeMap<ContentKey, Content> = contents.map(|c| (c.key, c.clone())).collect();
-        run(&program, &contents)
+        run(Open { program: &program, until: self.until, without: self.without, cut: None }, &contents)
     }
 }
 
 type Contents = BTreeMap<ContentKey, Content>;
 
 fn difference(
-    program: &dyn Program,
+    open: Open<'_>,
     contents: &Contents,
     native: &dyn Engine,
     end: Option<(usize, usize)>,
     same: &impl Fn(&str) -> Same,
 ) -> Option<String> {
-    let whole = [outputs(device(), program, contents, end), outputs(native, program, contents, end)];
+    let whole = Open { cut: end, ..open };
+    let whole = [outputs(device(), &whole, contents), outputs(native, &whole, contents)];
     let stage = (0..whole[0].len()).find(|i| differing(&whole[0][*i], &whole[1][*i], same).is_some())?;
-    let Step::Run(broken) = program.step(stage, &[]) else { unreachable!("it ran") };
+    let Step::Run(broken) = open.program.step(stage, &[]) else { unreachable!("it ran") };
     // Which pass was the first to go astray.
     let after = |passes| {
         let [theirs, ours] = [device() as &dyn Engine, native]
-            .map(|engine| outputs(engine, program, contents, Some((stage, passes))).remove(stage));
+            .map(|engine| outputs(engine, &open.cut_at(stage, passes), contents).remove(stage));
         differing(&theirs, &ours, same)
     };
     let last = end.map_or(broken.plan.passes.len(), |(_, passes)| passes);
@@ -235,9 +242,24 @@ fn alone(stage: &Stage, pass: usize, before: &Buffers) -> Alone {
 }
 
 /// A program whose stages give out every buffer that their passes write; one stage may end early.
+#[derive(Clone, Copy)]
 struct Open<'a> {
     program: &'a dyn Program,
+    until: Option<&'a str>,
+    without: &'a [&'a str],
     cut: Option<(usize, usize)>,
+}
+
+impl<'a> Open<'a> {
+    /// All of a program.
+    fn whole(program: &'a dyn Program) -> Self {
+        Self { program, until: None, without: &[], cut: None }
+    }
+
+    /// The same, ended after so many passes of a stage.
+    fn cut_at(self, stage: usize, passes: usize) -> Self {
+        Self { cut: Some((stage, passes)), ..self }
+    }
 }
 
 impl Program for Open<'_> {
@@ -252,6 +274,12 @@ impl Program for Open<'_> {
             }
             _ => {}
         }
+        if let Some(until) = self.until {
+            plan.passes
+                .truncate(1 + plan.passes.iter().position(|pass| pass.label == until).unwrap_or(plan.passes.len()));
+            plan.decision = None;
+        }
+        plan.passes.retain(|pass| !self.without.contains(&pass.label.as_str()));
         plan.outputs = written(&plan);
         Step::run(plan, values)
     }
@@ -275,15 +303,10 @@ fn written(plan: &Plan) -> Vec<ResourceId> {
     found
 }
 
-type Buffers = BTreeMap<String, Vec<u32>>;
+pub(crate) type Buffers = BTreeMap<String, Vec<u32>>;
 
 /// What every stage leaves in its buffers.
-fn outputs(
-    engine: &dyn Engine,
-    program: &dyn Program,
-    contents: &Contents,
-    cut: Option<(usize, usize)>,
-) -> Vec<Buffers> {
+fn outputs(engine: &dyn Engine, program: &Open<'_>, contents: &Contents) -> Vec<Buffers> {
     let mut found = Vec::new();
     let mut keep = |stage: Option<StageReport>| {
         if let Some(stage) = stage {
@@ -292,12 +315,13 @@ fn outputs(
         }
         true
     };
-    engine.run(&Open { program, cut }, contents, Timing::Device, &mut keep).unwrap();
+    engine.run(program, contents, Timing::Device, &mut keep).unwrap();
     found
 }
 
 fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> Option<String> {
     assert!(theirs.keys().eq(ours.keys()), "the same buffers");
+    let all = [theirs, ours];
     theirs.iter().find_map(|(label, theirs)| {
         let ours = &ours[label];
         let close = |within: f32, a: u32, b: u32| {
@@ -305,18 +329,23 @@ fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -> Same) -> 
             a.to_bits() == b.to_bits() || (a - b).abs() <= within || (a.is_nan() && b.is_nan())
         };
         match same(label) {
-            Same::Apart(_) => None,
+            Same::Apart(reason) => {
+                assert!(!reason.is_empty(), "a reason why");
+                None
+            }
             Same::Bits => first_of(label, theirs, ours, |a, b| a == b),
             Same::Within(most) => first_of(label, theirs, ours, |a, b| close(most, a, b)),
-            Same::Sorted(rows) => {
-                let [mut a, mut b] = [rows(theirs), rows(ours)];
-                a.sort();
-                b.sort();
-                let at = (0..a.len().max(b.len())).find(|i| a.get(*i) != b.get(*i))?;
-                Some(format!("'{label}', row {at}: {:?} there, {:?} here", a.get(at), b.get(at)))
-            }
+            Same::Sorted(rows) => first_row(label, [rows(theirs), rows(ours)]),
+            Same::Said(rows) => first_row(label, all.map(rows)),
         }
     })
+}
+
+fn first_row(label: &str, mut rows: [Vec<Vec<u32>>; 2]) -> Option<String> {
+    rows.iter_mut().for_each(|rows| rows.sort());
+    let [a, b] = rows;
+    let at = (0..a.len().max(b.len())).find(|i| a.get(*i) != b.get(*i))?;
+    Some(format!("'{label}', row {at}: {:?} there, {:?} here", a.get(at), b.get(at)))
 }
 
 fn first_of(label: &str, theirs: &[u32], ours: &[u32], same: impl Fn(u32, u32) -> bool) -> Option<String> {

@@ -2,4 +2,5 @@
 
 mod fold;
 mod harness;
+mod lists;
 mod receivers;

@@ -49,13 +49,6 @@ pub(super) struct IncidentFace {
     pub(super) flatness: f32,
 }
 
-impl IncidentFace {
-    /// Which way round the face lies at its edge.
-    pub(super) fn turned(&self, side: i32) -> i32 {
-        if self.reference & 1 != 0 { -side } else { side }
-    }
-}
-
 /// +1 where the canonical winding is seen counter-clockwise on the light, −1 clockwise, 0 edge-on: such a face hides nothing.
 #[inline(always)]
 pub(super) fn side_of_plane<S: Simd>(

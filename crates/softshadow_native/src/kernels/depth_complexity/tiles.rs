@@ -65,14 +65,9 @@ pub(super) fn first_chunk_word(tile_count: usize) -> usize {
     2 * HEAD * tile_count
 }
 
-const EDGE_BITS: u32 = 29;
-pub(super) const NO_ENTRY: u32 = u32::MAX;
+pub(super) const EDGE_BITS: u32 = 29;
 
-/// An entry: an edge and its weight, −2 to 2, 0 where each receiver finds its own.
-pub(super) fn listed(edge: u32, weight: i32) -> u32 {
-    edge | if weight == 0 { 0 } else { ((weight + 4) as u32) << EDGE_BITS }
-}
-
+/// The edge of an entry. An entry is an edge and its weight, −2 to 2, 0 where each receiver finds its own.
 pub(super) fn listed_edge(entry: u32) -> u32 {
     entry & ((1 << EDGE_BITS) - 1)
 }
