@@ -54,17 +54,17 @@ impl<S: Simd> Loop<S> {
         let counts = low_is_ahead | high_is_ahead;
         let [low, high] = image.directions(simd);
         let is_left = if is_forward { image.left } else { !image.left };
-        self.has_left = self.has_left | (counts & is_left);
-        self.has_right = self.has_right | (counts & !is_left);
-        self.has_wide = self.has_wide | (counts & dot2(low, high).simd_lt(zero));
+        self.has_left |= counts & is_left;
+        self.has_right |= counts & !is_left;
+        self.has_wide |= counts & dot2(low, high).simd_lt(zero);
         let crosses = low_is_ahead ^ high_is_ahead;
         if crosses.any_true() {
             let infinite = select2(low_is_ahead, high, low);
             let goes_out = if is_forward { low_is_ahead } else { !low_is_ahead };
             self.outward = select2(crosses & goes_out, infinite, self.outward);
             self.homeward = select2(crosses & !goes_out, infinite, self.homeward);
-            self.leaves = self.leaves | (crosses & goes_out);
-            self.returns = self.returns | (crosses & !goes_out);
+            self.leaves |= crosses & goes_out;
+            self.returns |= crosses & !goes_out;
         }
     }
 }

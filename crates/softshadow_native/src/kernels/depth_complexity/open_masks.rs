@@ -13,7 +13,7 @@ use super::tiles::{NO_VIEW, Slot};
 use crate::engine::{Call, atomic_words};
 use crate::kernels::lanes::{LANES, Vec3x8};
 use crate::kernels::shared::receiver::{RECEIVER_NONE, RECEIVER_SURFACE, Receiver};
-use crate::kernels::shared::samples::{Sampling, first_sample};
+use crate::kernels::shared::samples::Sampling;
 use crate::kernels::{RUN, records, records_mut};
 
 /// Where the samples of a receiver stand.
@@ -71,7 +71,7 @@ impl Masks<'_> {
         let is_receiver = kind.simd_ne(RECEIVER_NONE);
         let sees = is_receiver & view.exists;
         let is_open = sees | (is_receiver & view.inside);
-        let crosses = sees & !is_above_horizon(&self.frame, kind.simd_eq(RECEIVER_SURFACE), slope);
+        let crosses = sees & kind.simd_eq(RECEIVER_SURFACE) & !is_above_horizon(&self.frame, slope);
         let words = self.frame.sample_count.div_ceil(32);
         let unseen = is_open.select(u32x8::splat(simd, 0), u32x8::splat(simd, u32::MAX));
         let mut visible = [0; LANES];
@@ -110,7 +110,7 @@ impl Masks<'_> {
         let mut mask = zero;
         let first = match &self.samples {
             Samples::Shared(_) => [0; LANES],
-            Samples::Own(_, sampling) => index.map(|index| first_sample(sampling, index) as usize),
+            Samples::Own(_, sampling) => index.map(|index| sampling.first_sample(index) as usize),
         };
         for bit in 0..(self.frame.sample_count - 32 * word).min(32) {
             let at = (32 * word + bit) as usize;

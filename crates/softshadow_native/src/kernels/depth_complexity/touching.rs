@@ -10,7 +10,7 @@ use crate::kernels::lanes::{LANES, Vec3x8};
 use crate::kernels::records;
 use crate::kernels::shared::light::{Light, eight_ways, light_view};
 use crate::kernels::shared::receiver::{RECEIVER_NONE, Receiver};
-use crate::kernels::shared::samples::{Sampling, first_sample};
+use crate::kernels::shared::samples::Sampling;
 use crate::kernels::shared::triangle::{Corner, triangle_blocks};
 
 /// Words that a thread takes at once: a word costs as many steps as there are triangles, for each of its samples.
@@ -62,7 +62,7 @@ impl Scene<'_> {
             return 0;
         }
         let count = (self.sampling.count - 32 * word).min(32);
-        let first = (first_sample(&self.sampling, index as u32) + 32 * word) as usize;
+        let first = (self.sampling.first_sample(index as u32) + 32 * word) as usize;
         let mut waiting = !blocked & (u32::MAX >> (32 - count));
         let mut hidden = 0;
         while waiting != 0 {

@@ -8,7 +8,7 @@ use crate::engine::Call;
 use crate::kernels::lanes::{LANES, Vec3x8};
 use crate::kernels::shared::light::{Light, LightView, eight_ways, light_view, light_way_bounds};
 use crate::kernels::shared::receiver::{RECEIVER_NONE, RECEIVER_SURFACE, Receiver};
-use crate::kernels::shared::samples::{Sampling, first_sample};
+use crate::kernels::shared::samples::Sampling;
 use crate::kernels::{RUN, records};
 
 struct Lit<'a> {
@@ -53,7 +53,7 @@ fn begin_run<S: Simd>(
         *decided = if hidden || view.inside { 0 } else { sampling.probes };
         let below = !hidden && !view.inside && receiver.kind == RECEIVER_SURFACE;
         if below && !all_above(light, &view, receiver) {
-            let own = first_sample(sampling, first + at as u32) as usize;
+            let own = sampling.first_sample(first + at as u32) as usize;
             block_below(simd, light, &view, receiver, &samples[own..own + sampling.count as usize], mask);
         }
     }

@@ -16,7 +16,7 @@ use crate::kernels::records;
 use crate::kernels::shared::hierarchy::{BvhNode, box_pad, eight_reciprocals};
 use crate::kernels::shared::light::{LIGHT_SUN, Light, LightView, eight_ways, light_view};
 use crate::kernels::shared::receiver::Receiver;
-use crate::kernels::shared::samples::{Sampling, first_sample};
+use crate::kernels::shared::samples::Sampling;
 use crate::kernels::shared::triangle::{Corner, triangle_blocks};
 
 /// Candidates that a thread takes at once: each may cost a thousand times another.
@@ -123,7 +123,7 @@ struct Own<'a> {
 impl Scene<'_> {
     fn own<'a>(&'a self, walk: &'a Candidate) -> Own<'a> {
         let receiver = &self.receivers[walk.receiver as usize];
-        let first_sample = first_sample(&self.sampling, walk.receiver);
+        let first_sample = self.sampling.first_sample(walk.receiver);
         Own { walk, receiver, view: light_view(&self.light, receiver.position), first_sample }
     }
 

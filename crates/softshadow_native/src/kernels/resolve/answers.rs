@@ -5,7 +5,7 @@ use fearless_simd::{Simd, f32x8, prelude::*, u32x8};
 use super::passes::{Answering, Answers, Eight, binomial_answer};
 use crate::kernels::lanes::LANES;
 use crate::kernels::records;
-use crate::kernels::shared::samples::{Sampling, first_sample};
+use crate::kernels::shared::samples::Sampling;
 
 /// Masks of blocked samples.
 pub(super) struct Masks<'a> {
@@ -52,7 +52,7 @@ pub(super) fn most<S: Simd>(known: u32x8<S>) -> u32 {
 /// The sets of eight receivers, among all samples.
 #[inline(always)]
 pub(super) fn first_samples(sampling: &Sampling, receivers: Eight) -> [usize; LANES] {
-    std::array::from_fn(|k| first_sample(sampling, receivers.receiver(k) as u32) as usize)
+    std::array::from_fn(|k| sampling.first_sample(receivers.receiver(k) as u32) as usize)
 }
 
 impl<'a> Radiance<'a> {

@@ -13,7 +13,7 @@ use crate::engine::Call;
 use crate::kernels::lanes::{LANES, Vec3x8};
 use crate::kernels::shared::light::{LIGHT_FLAT, LIGHT_SPHERE, Light, LightView, eight_ways, light_view};
 use crate::kernels::shared::receiver::{RECEIVER_NONE, Receiver};
-use crate::kernels::shared::samples::{Sampling, first_sample};
+use crate::kernels::shared::samples::Sampling;
 use crate::kernels::{RUN, records, records_mut};
 
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -187,7 +187,7 @@ impl Shader<'_> {
             // Without shadow there is nothing to decorrelate: the first set serves all.
             Seen::Visibility(_) if view.exists => 0,
             Seen::Visibility(_) => return Vec3::ZERO,
-            _ => first_sample(sampling, index as u32) as usize,
+            _ => sampling.first_sample(index as u32) as usize,
         };
         let zero = f32x8::splat(simd, 0.0);
         let count = sampling.count as usize;

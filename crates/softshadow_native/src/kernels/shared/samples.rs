@@ -28,14 +28,15 @@ fn mixed(index: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// Where the set of a receiver of the block begins among all samples.
-pub(crate) fn first_sample(sampling: &Sampling, index: u32) -> u32 {
-    let Sampling { count, sets, row, first_receiver, .. } = *sampling;
-    let at = first_receiver + index;
-    let set = match (sets, row) {
-        (0 | 1, _) => 0,
-        (_, 0) => mixed(at) % sets,
-        _ => (at % row) % sets + sets * ((at / row) % sets),
-    };
-    set * count
+impl Sampling {
+    /// Where the set of a receiver of the block begins among all samples.
+    pub(crate) fn first_sample(&self, index: u32) -> u32 {
+        let at = self.first_receiver.wrapping_add(index);
+        let set = match (self.sets, self.row) {
+            (0 | 1, _) => 0,
+            (sets, 0) => mixed(at) % sets,
+            (sets, row) => (at % row) % sets + sets * ((at / row) % sets),
+        };
+        set * self.count
+    }
 }

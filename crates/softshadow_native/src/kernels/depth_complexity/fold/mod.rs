@@ -146,7 +146,7 @@ impl<S: Simd> Eight<S> {
         let slope = horizon_slope(&view, Vec3x8::from_fn(simd, |k| bundle.receivers[k].normal));
         let surfaces = bundle.receivers.iter().enumerate();
         let surfaces: u64 = surfaces.map(|(k, r)| u64::from(r.kind == RECEIVER_SURFACE) << k).sum();
-        let above = is_above_horizon(frame, mask32x8::from_bitmask(simd, surfaces), slope);
+        let above = !mask32x8::from_bitmask(simd, surfaces) | is_above_horizon(frame, slope);
         Self {
             member_bits,
             members: mask32x8::from_bitmask(simd, u64::from(member_bits)),

@@ -183,11 +183,10 @@ fn finish<S: Simd>(
         unfinished += u32::from(sums.changes > LARGEST_COUNT);
         let Some((areas, area)) = &areas else { continue };
         let sampled = 1.0 - layered.count_ones() as f32 / count as f32;
-        if let Some(visible) = visible_area(stock, sums, area[k], slot.depth, layered, sampled) {
-            if eight.is_above(k) {
-                areas[slot.receiver as usize].store(AREA_ANSWERS | visible.to_bits(), Ordering::Relaxed);
-                by_area += 1;
-            }
+        let visible = visible_area(stock, sums, area[k], slot.depth, layered, sampled);
+        if let Some(visible) = visible.filter(|_| eight.is_above(k)) {
+            areas[slot.receiver as usize].store(AREA_ANSWERS | visible.to_bits(), Ordering::Relaxed);
+            by_area += 1;
         }
     }
     for (at, found) in [(count::UNFINISHED, unfinished), (count::BY_AREA, by_area)] {

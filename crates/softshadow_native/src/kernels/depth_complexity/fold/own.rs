@@ -10,7 +10,7 @@ use super::super::lists::lanes_of;
 use super::{Eight, GROUP, Samples, Stock};
 use crate::kernels::lanes::{LANES, Vec3x8};
 use crate::kernels::records;
-use crate::kernels::shared::samples::{Sampling, first_sample};
+use crate::kernels::shared::samples::Sampling;
 
 /// What own samples are taken from.
 pub(super) struct Sets<'a> {
@@ -40,7 +40,7 @@ impl<S: Simd> Own<S> {
         let vectors = (count as usize).div_ceil(LANES);
         let mut samples = [[[zero; 2]; GROUP as usize / LANES]; LANES];
         for k in lanes_of(eight.member_bits) {
-            let first = (first_sample(&sets.sampling, bundle.slots[k].receiver) + GROUP * sets.group) as usize;
+            let first = (sets.sampling.first_sample(bundle.slots[k].receiver) + GROUP * sets.group) as usize;
             let set = &sets.sets[first..first + count as usize];
             let cap = f32x8::splat(simd, view.cap.as_slice()[k]);
             let tangent = f32x8::splat(simd, view.tangent.as_slice()[k]);
