@@ -191,15 +191,9 @@ fn full_lists_are_reported() {
         assert!(buffers["running counts"][3] > 0, "lists have room for all");
         Vec::new()
     }
-    // From beside a ball nearly every edge lies in the shafts of points in no order.
-    let (scene, _, _) = shipped("toruses", [8, 8]);
-    let at = |k: usize| {
-        [(k * 7 % 31) as f64 * 0.1 - 1.5, (k * 11 % 17) as f64 * 0.05 - 0.4, (k * 13 % 29) as f64 * 0.1 - 1.4]
-    };
-    let points = Source::Points(Points::new((0..40_000).map(at).collect(), None).unwrap());
-    let pose = look_at([1.5, 3.0, 1.0], [0.0, -0.2, 0.0], None).unwrap();
-    let light = Light::new(LightShape::Sphere { radius: 0.4 }, pose).unwrap();
-    before_fold(Call::new(accurate(), &scene, vec![light], points)).compare(|label| match label {
+    // Of foliage every edge of every leaf is a silhouette.
+    let (scene, light, camera) = shipped("canopy", [32, 24]);
+    before_fold(Call::new(accurate(), &scene, vec![light], camera)).compare(|label| match label {
         "running counts" => Same::Said(full),
         _ => Same::Apart("whose list is cut depends on who came first"),
     });
