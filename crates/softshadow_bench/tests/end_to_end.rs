@@ -88,7 +88,11 @@ fn a_run_measures_says_and_records() {
     for row in of("waving") {
         let frames = |key: &str| row[key].as_array().unwrap().iter().filter(|ms| ms.as_f64().unwrap() > 0.0).count();
         assert_eq!(["refit_ms", "build_ms", "wall_ms", "call_ms"].map(frames), [2; 4], "{row}");
-        assert_eq!((&row["differing_receivers"], &row["rebuild_reasons"]), (&0.into(), &serde_json::json!([])), "{row}");
+        assert_eq!(
+            (&row["differing_receivers"], &row["rebuild_reasons"]),
+            (&0.into(), &serde_json::json!([])),
+            "{row}"
+        );
     }
     assert_eq!(of("waving").len(), of("measurement").len());
 
