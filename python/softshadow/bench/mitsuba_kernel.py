@@ -17,8 +17,8 @@ from .rays import Points, Query
 
 mi.set_variant("llvm_ad_rgb")
 
-_REACH = 2
-"""Pixels to each side in which probes must agree. Fewer miss the ends of penumbrae: at 256 samples the error grows."""
+_REACH = 4
+"""Pixels to each side in which probes must agree. With 2 the error of 256 samples grows by a quarter on the bunny."""
 _LIT, _DARK = 1, 2
 
 
