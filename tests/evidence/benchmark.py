@@ -48,7 +48,8 @@ def ratios(scenes: list[str], rounds: int) -> tuple[list[str], bool]:
         "and finding edges costs the same for any number. There exact coverage is a naive search; here it is one "
         "more look-up, and only samples next to an edge are tested. Interleaving adds a filter over the image. "
         "Semi-opaque (all triangles of opacity 0.5): the paper adds opacities in the counters it has; here sums of "
-        "logarithms are bit planes beside them. RMSE is that in the penumbra, of the semi-opaque scene against its own reference.",
+        "logarithms are bit planes beside them. RMSE is that in the penumbra, of the semi-opaque scene against its own "
+        "reference.",
         "",
         "| scene | ratio | published | ours, median | from | to | RMSE of | over |",
         "|---|---|---|---|---|---|---|---|",
