@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import benchmark
@@ -28,14 +29,24 @@ from softshadow.bench.scenes import Measured, find
 LARGEST_SHARE = 1e-5
 PASSES = [f"depth_complexity:samples={samples}" for samples in (64, 256)]
 MOVING = ["ray_traced:samples=64", "depth_complexity:samples=64"]
+SAMPLES = (16, 64, 256)
+RAYS = [ss.RayTraced(samples=samples) for samples in SAMPLES]
+PROBED = [ss.RayTraced(samples=samples, probes=16) for samples in SAMPLES[1:]]
+EDGES = [ss.DepthComplexity(samples=samples) for samples in SAMPLES]
+BLENDED = [ss.DepthComplexity(samples=samples, evaluation="blended", exact_area=False) for samples in SAMPLES]
+MEASURED: list[tuple[str, int, list[ss.Technique]]] = [
+    ("bunny", 512, [*RAYS, *PROBED, *EDGES, *BLENDED]),
+    ("toruses", 512, [RAYS[1], *EDGES, *BLENDED]),
+    ("canopy", 512, [RAYS[1], *EDGES[:2]]),
+    # Blended at this size takes minutes where a processor draws: one number of samples has to do.
+    ("bunny", 1024, [*EDGES, BLENDED[1]]),
+    ("toruses", 1024, [*EDGES, BLENDED[1]]),
+]
+"""One model on a ground; several bodies, standing, lying and tilted, over a floor; foliage."""
 BESIDE = (
     "Everything gets the same receivers and light samples. Of ours the time from the camera to visibility counts, "
     "receivers included, of the others the query alone. Probes: 16 samples first, all samples only where those of a "
-    "receiver and of its neighbours disagree (ours within a pixel, the kernel's within four). Bunny is a model on a "
-    "ground; `toruses` is the shipped scene of several bodies (standing, lying and tilted toruses over a floor); "
-    "`canopy` has 20,000 leaves, for which `depth_complexity` folds triangles by itself. `blended` draws penumbra "
-    "wedges, which a software driver fills slowly: what takes longer than eight seconds has one turn, and at 1024 × "
-    "1024 it is measured with 64 samples alone."
+    "receiver and of its neighbours disagree (ours within a pixel, the kernel's within four)."
 )
 MARK = "<!-- speed against error -->"
 
@@ -62,21 +73,23 @@ def main() -> int:
         "Ray by ray against Embree": ray_by_ray,
         "Silhouette edges against rays": against_rays,
         "Mutants of the silhouette edges": mutants,
-        "Time against error": lambda: time_against_error(chosen.rounds),
+        **{
+            f"Time against error: {name}, {size} × {size}": partial(time_against_error, name, size, ours, chosen.rounds)
+            for name, size, ours in MEASURED
+        },
         "Where the time goes": lambda: benchmark.passes("bunny", PASSES, chosen.rounds),
         "Ratios of the paper": lambda: benchmark.ratios(["bunny", "toruses"], chosen.rounds),
         "A scene that moves": lambda: benchmark.waving(["bunny", "toruses"], MOVING, frames=10),
         "Shipped scenes": lambda: shipped_scenes(chosen.rounds, chosen.readme),
     }
-    earlier = sections_of(chosen.output)
-    report, passed = introduction, True
+    earlier, passed = sections_of(chosen.output), True
+    told = {title: earlier.get(title, ["not made yet", ""]) for title in sections}
     for title, make in sections.items():
         if chosen.only is None or any(title.startswith(only) for only in chosen.only):
-            lines, ok = make()
+            told[title], ok = make()
             passed &= ok
-        else:
-            lines = earlier.get(title, ["not made yet", ""])
-        report += [f"## {title}", "", *lines]
+        # At once: the sections that follow take long.
+        report = [*introduction, *(line for name, lines in told.items() for line in (f"## {name}", "", *lines))]
         chosen.output.write_text("\n".join(report))
     print("\n".join(report))
     return 0 if passed else 1
@@ -98,32 +111,17 @@ def ray_by_ray() -> tuple[list[str], bool]:
     return [line for lines, _ in parts for line in lines], all(ok for _, ok in parts)
 
 
-def time_against_error(rounds: int) -> tuple[list[str], bool]:
-    """Every scene against the clock and beside the others, all of which must be there."""
+def time_against_error(name: str, size: int, techniques: list[ss.Technique], rounds: int) -> tuple[list[str], bool]:
+    """A scene against the clock and beside the others, all of which must be there."""
     tracers, skipped = peers.installed()
     # Its rays do not end at the light, and nobody is slower.
     tracers.pop("trimesh", None)
-    counts = (16, 64, 256)
-    rays = [ss.RayTraced(samples=samples) for samples in counts]
-    probed = [ss.RayTraced(samples=samples, probes=16) for samples in counts[1:]]
-    edges = [ss.DepthComplexity(samples=samples) for samples in counts]
-    blended = [ss.DepthComplexity(samples=samples, evaluation="blended", exact_area=False) for samples in counts]
-    measured: list[tuple[str, int, list[ss.Technique]]] = [
-        ("bunny", 512, [*rays, *probed, *edges, *blended]),
-        ("toruses", 512, [*rays, *edges, *blended]),
-        ("canopy", 512, [*rays, *edges]),
-        ("bunny", 1024, [*edges, blended[1]]),
-        ("toruses", 1024, [*edges, blended[1]]),
-    ]
-    lines = [*(f"Skipped: {reason}" for reason in skipped), f"{BESIDE} Medians of {rounds} turns.", ""]
-    complete = not skipped
-    for name, size, techniques in measured:
-        passes = 8 if size == 512 else 4
-        reference = ss.RayTraced(samples=256, passes=passes, pattern="low_discrepancy", seed=99)
-        found = peers.beside(find(name, size), tracers, techniques, rounds, "software", reference)
-        lines += [*peers.lines(found), *peers.ratio_lines(found), *found.refused]
-        complete &= not found.refused
-    return lines, complete
+    tracers = {name: (kind, [n for n in counts if n in SAMPLES]) for name, (kind, counts) in tracers.items()}
+    reference = ss.RayTraced(samples=256, passes=4, pattern="low_discrepancy", seed=99)
+    found = peers.beside(find(name, size), tracers, techniques, rounds, "software", reference)
+    missing = [*(f"Skipped: {reason}" for reason in skipped), *(f"Refused: {reason}" for reason in found.refused)]
+    lines = [f"{BESIDE} Medians of {rounds} turns.", "", *missing, *peers.lines(found), *peers.ratio_lines(found)]
+    return lines, not missing
 
 
 def shipped_scenes(rounds: int, readme: Path) -> tuple[list[str], bool]:

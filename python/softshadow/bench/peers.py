@@ -11,7 +11,7 @@ import argparse
 import importlib
 import statistics
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import Any
@@ -45,7 +45,7 @@ OURS: tuple[Technique, ...] = (
 )
 REFERENCE = RayTraced(samples=256, passes=16, pattern="low_discrepancy", seed=99)
 PROBES = 16
-PATIENCE_S = 8.0
+PATIENCE_S = 5.0
 """What takes longer than this in its warm-up has no other turn."""
 
 Run = Callable[[], tuple[Points, float]]
@@ -121,8 +121,8 @@ def installed() -> tuple[dict[str, tuple[type[Any], tuple[int, ...]]], list[str]
 
 def beside(
     model: Measured,
-    tracers: dict[str, tuple[type[Any], tuple[int, ...]]],
-    techniques: tuple[Technique, ...] | list[Technique],
+    tracers: Mapping[str, tuple[type[Any], Sequence[int]]],
+    techniques: Sequence[Technique],
     rounds: int,
     device: Device = "auto",
     reference: RayTraced = REFERENCE,
