@@ -46,7 +46,8 @@ def ratios(scenes: list[str], rounds: int) -> tuple[list[str], bool]:
         "are those of Forest, Barthe and Paulin (2008): whole pictures of 1024 × 1024 on a Geforce 8800 GTX. The two "
         "differ where the two programs do. There samples are channels to blend; here 64 of them are bits of two words, "
         "and finding edges costs the same for any number. There exact coverage is a naive search; here it is one "
-        "more look-up, and only samples next to an edge are tested. Interleaving adds a filter over the image. "
+        "more look-up, and only samples next to an edge are tested. Interleaving adds a filter over the image, "
+        "and blurs penumbrae narrower than its square. "
         "Semi-opaque (all triangles of opacity 0.5): the paper adds opacities in the counters it has; here sums of "
         "logarithms are bit planes beside them. RMSE is that in the penumbra, of the semi-opaque scene against its own "
         "reference.",

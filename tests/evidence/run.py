@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Callable
 from functools import partial
@@ -63,8 +64,8 @@ def main() -> int:
     introduction = [
         "# Evidence",
         "",
-        "Made by `make evidence`. Absolute times hold only for the machine that made them; ratios come from one run "
-        "in which both sides took turns.",
+        "Made by `make evidence`. Absolute times hold only for the machine that made them, and not where it had other "
+        "work (each section says so); ratios come from one run in which both sides took turns.",
         "",
         f"Adapter: {adapter['name']}, {adapter['backend']}, {adapter['device_type']}, {adapter['driver']}.",
         "",
@@ -86,7 +87,9 @@ def main() -> int:
     told = {title: earlier.get(title, ["not made yet", ""]) for title in sections}
     for title, make in sections.items():
         if chosen.only is None or any(title.startswith(only) for only in chosen.only):
-            told[title], ok = make()
+            load = os.getloadavg()[0]
+            lines, ok = make()
+            told[title] = [*lines, f"Load of the machine before: {load:.1f}, on {os.cpu_count()} processors.", ""]
             passed &= ok
         # At once: the sections that follow take long.
         report = [*introduction, *(line for name, lines in told.items() for line in (f"## {name}", "", *lines))]
