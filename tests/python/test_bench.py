@@ -55,7 +55,7 @@ def test_what_is_slow_has_one_turn(scene, monkeypatch):
     model = Measured("card", scene, light_above(), camera_above((48, 36)))
     result = peers.beside(model, {"brute": (Brute, (16,))}, [], rounds=3, device="software")
     assert result.rows[0].times_ms == [5.0]
-    assert "| brute | 16 | 5 (one turn) |" in "\n".join(peers.lines(result))
+    assert "| brute | 16 | 5 (first turn) |" in "\n".join(peers.lines(result))
 
 
 def test_nobody_is_fast_at_an_error_that_nobody_reaches():
