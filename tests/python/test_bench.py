@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import softshadow as ss
-from conftest import CARD, FLOOR, SQUARE, camera_above, light_above
+from conftest import camera_above, light_above
 from softshadow.bench import peers, rays
 from softshadow.bench.peers import Beside, Row
+from softshadow.bench.rays import Query
 from softshadow.bench.scenes import Measured, find
 
 
@@ -17,7 +18,7 @@ def row(tracer: str, samples: int, ms: float, rmse: float, ours: bool = False) -
 
 
 def found(*rows: Row) -> Beside:
-    return Beside("card", (8, 8), 64, 9, 0.001, list(rows), [])
+    return Beside("card", (8, 8), 64, 9, 0.001, peers.REFERENCE, list(rows), [])
 
 
 def test_ratios_compare_each_at_its_fastest_for_an_error():
@@ -35,6 +36,28 @@ def test_ratios_compare_each_at_its_fastest_for_an_error():
     )
 
 
+def test_ours_is_held_against_the_fastest_of_the_others():
+    rows = row("edges", 64, 8, 0.009, ours=True), row("a", 64, 4, 0.04), row("b", 64, 16, 0.007), row("c", 256, 1, 0.01)
+    assert peers.ratio_lines(found(*rows))[-2] == (
+        "| edges : fastest other | 8.00 (64 : 256 samples) | 8.00 (64 : 256 samples) | 8.00 (64 : 256 samples) | – |"
+    )
+    assert "| edges | 64 | 8 | 0.0090 | 2.00 |" in peers.lines(found(*rows))
+
+
+def test_techniques_are_told_apart_by_their_settings():
+    blended = ss.DepthComplexity(samples=16, evaluation="blended", exact_area=False)
+    assert peers.named(blended) == "depth_complexity, exact_area=False, evaluation=blended"
+    assert peers.named(ss.RayTraced(samples=16, passes=4)) == "ray_traced"
+
+
+def test_what_is_slow_has_one_turn(scene, monkeypatch):
+    monkeypatch.setattr(peers, "PATIENCE_S", 0.004)
+    model = Measured("card", scene, light_above(), camera_above((48, 36)))
+    result = peers.beside(model, {"brute": (Brute, (16,))}, [], rounds=3, device="software")
+    assert result.rows[0].times_ms == [5.0]
+    assert "| brute | 16 | 5 (first turn) |" in "\n".join(peers.lines(result))
+
+
 def test_nobody_is_fast_at_an_error_that_nobody_reaches():
     assert peers.fastest([row("edges", 16, 10, 0.03), row("edges", 64, 8, float("nan"))], 0.02) is None
 
@@ -49,7 +72,7 @@ def test_rays_are_asked_in_blocks_and_stop_at_the_horizon(monkeypatch):
         sizes.append(len(p))
         return np.ones((len(p), len(s)), dtype=bool), 2.0
 
-    values, ms = rays.visibility(visible, origins, normals, targets)
+    values, ms = rays.visibility(visible, Query(origins, normals, targets, targets[:1], np.ones((1, 5), bool)))
     assert (sizes, ms) == ([3, 2], 4.0)
     assert (values == 0.5).all()
 
@@ -59,21 +82,22 @@ class Brute:
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
         assert (vertices.shape, faces.shape) == ((8, 3), (4, 3))
+        self.card_y = vertices[4, 1]
 
     def visible(self, origins: np.ndarray, targets: np.ndarray) -> tuple[np.ndarray, float]:
         p, way = origins[:, None].astype(float), targets[None].astype(float) - origins[:, None]
-        at = (1.0 - p[..., 1]) / way[..., 1]
+        at = (self.card_y - p[..., 1]) / way[..., 1]
         hit = (at > 0) & (at < 1) & (np.abs(p + at[..., None] * way)[..., [0, 2]] < 0.5).all(axis=-1)
         return ~hit, 5.0
 
-    def visibility(self, origins: np.ndarray, normals: np.ndarray, targets: np.ndarray) -> tuple[np.ndarray, float]:
-        return rays.visibility(self.visible, origins, normals, targets)
+    def visibility(self, query: Query) -> tuple[np.ndarray, float]:
+        assert query.seen.sum() == len(query.origins)
+        assert len(query.probes) == 16
+        return rays.visibility(self.visible, query)
 
 
 def test_others_get_the_same_receivers_and_samples(scene):
-    vertices = np.vstack([FLOOR, CARD]).astype(np.float32)
-    faces = np.vstack([SQUARE, SQUARE + 4]).astype(np.uint32)
-    model = Measured("card", scene, light_above(), camera_above((48, 36)), vertices, faces)
+    model = Measured("card", scene, light_above(), camera_above((48, 36)))
     result = peers.beside(model, {"brute": (Brute, (64,))}, [ss.RayTraced(samples=64)], rounds=2, device="software")
     ours, theirs = result.rows
     assert result.in_penumbra > 50
@@ -81,12 +105,13 @@ def test_others_get_the_same_receivers_and_samples(scene):
     assert (theirs.ms, len(theirs.times_ms), len(ours.times_ms)) == (5.0, 2, 2)
     said = "\n".join(peers.lines(result))
     assert "| brute | 64 | 5 |" in said
+    assert f"| {ours.ms / 5:.2f} |" in said
     assert "48 × 36" in said
 
 
 def test_lights_without_one_set_of_positions_are_refused(scene):
     sun = ss.SunLight(azimuth=40, elevation=60)
-    model = Measured("card", scene, sun, camera_above(), np.empty((0, 3)), np.empty((0, 3)))
+    model = Measured("card", scene, sun, camera_above())
     with pytest.raises(ss.SceneError, match="neither a sphere nor a sun"):
         peers.beside(model, {}, peers.OURS, rounds=1, device="software")
 
@@ -98,12 +123,24 @@ def test_shipped_scenes_are_found_with_all_their_triangles():
     assert canopy.faces.max() == len(canopy.vertices) - 1
 
 
+@pytest.mark.parametrize("name", ["canopy", "hall"])
+def test_positions_are_float32_about_the_center_of_the_bounds(name):
+    model = find(name, 48)
+    result = ss.visibility(model.scene, model.light, camera=model.camera, receivers=True, device="software")
+    positions = result.positions[result.valid]
+    about = model.stored(positions)
+    assert np.abs(about + model.center - positions).max() < 1e-15 * np.abs(positions).max() * 4
+    model.stored(ss.light_points(model.light, 16, scene=model.scene).positions)
+    with pytest.raises(ss.SceneError, match="no float32 numbers"):
+        model.stored(positions + 1e-10)
+
+
 def test_a_technique_that_refuses_a_scene_is_named_and_the_others_go_on():
     techniques = [ss.DepthComplexity(samples=16, unit="edges"), ss.RayTraced(samples=4)]
     result = peers.beside(find("canopy", 48), {}, techniques, rounds=1, device="software")
     assert [row.tracer for row in result.rows] == ["ray_traced"]
     assert len(result.refused) == 1
-    assert result.refused[0].startswith("canopy, depth_complexity with 16 samples: ")
+    assert result.refused[0].startswith("canopy, depth_complexity, unit=edges with 16 samples: ")
 
 
 def test_what_is_missing_is_named_and_counted(monkeypatch, capsys, tmp_path):

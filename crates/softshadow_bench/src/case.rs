@@ -1,11 +1,13 @@
-//! What is measured: a technique with its settings, alone or with a picture, in the command line's own words.
+//! What is measured: a technique with its settings, alone or with a picture, on a scene as it is or half opaque, in the command
+//! line's own words.
 
 use std::str::FromStr;
 
 use serde_json::{Map, Value};
 use softshadow::{Shading, Technique};
 
-/// `depth-complexity:samples=64,exact_area=true`, and `+integrated` or `+modulated` where the picture counts, too.
+/// `depth-complexity:samples=64,exact_area=true`, with `+integrated` or `+modulated` where the picture counts, too, and with
+/// `+semi-opaque` where every triangle lets half of the light pass.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Case {
     /// As it was typed.
@@ -13,6 +15,7 @@ pub(crate) struct Case {
     pub(crate) technique: Technique,
     /// How the picture is shaded; without it only visibility is computed.
     pub(crate) picture: Option<Shading>,
+    pub(crate) semi_opaque: bool,
 }
 
 /// A text that is no case.
@@ -26,14 +29,14 @@ pub(crate) enum CaseError {
     Twice { setting: String },
     #[error("{name}: {reason}")]
     Settings { name: String, reason: String },
-    #[error("unknown picture '{text}'; there are integrated, modulated")]
-    Picture { text: String },
+    #[error("'+{text}': +integrated, +modulated or +semi-opaque expected, each once")]
+    Addition { text: String },
 }
 
 impl Case {
     /// Whether both measure the same, however they were typed.
     pub(crate) fn is(&self, other: &Self) -> bool {
-        self.technique == other.technique && self.picture == other.picture
+        (&self.technique, self.picture, self.semi_opaque) == (&other.technique, other.picture, other.semi_opaque)
     }
 }
 
@@ -41,16 +44,24 @@ impl FromStr for Case {
     type Err = CaseError;
 
     fn from_str(text: &str) -> Result<Self, CaseError> {
-        let (technique, picture) = match text.split_once('+') {
-            None => (text, None),
-            Some((technique, picture)) => (technique, Some(shading(picture)?)),
-        };
-        Ok(Self { text: text.to_owned(), technique: parse_technique(technique)?, picture })
+        let mut parts = text.split('+');
+        let technique = parse_technique(parts.next().unwrap_or_default())?;
+        let (mut picture, mut semi_opaque) = (None, false);
+        for part in parts {
+            let twice = match part.replace('-', "_").as_str() {
+                "semi_opaque" => std::mem::replace(&mut semi_opaque, true),
+                _ => picture.replace(shading(part)?).is_some(),
+            };
+            if twice {
+                return Err(CaseError::Addition { text: part.into() });
+            }
+        }
+        Ok(Self { text: text.to_owned(), technique, picture, semi_opaque })
     }
 }
 
 fn shading(text: &str) -> Result<Shading, CaseError> {
-    serde_json::from_value(Value::from(text)).map_err(|_| CaseError::Picture { text: text.into() })
+    serde_json::from_value(Value::from(text)).map_err(|_| CaseError::Addition { text: text.into() })
 }
 
 /// `ray-traced:samples=64,seed=1`; what is not given has its default. Names and types are those of the settings themselves.
@@ -99,14 +110,17 @@ mod tests {
         assert_eq!((case.technique, case.picture), (Technique::DepthComplexity(settings), None));
         let case: Case = "ray_traced+modulated".parse().unwrap();
         assert_eq!(case.technique, Technique::RayTraced(RayTraced::default()));
-        assert_eq!(case.picture, Some(Shading::Modulated));
+        assert_eq!((case.picture, case.semi_opaque), (Some(Shading::Modulated), false));
+        let case: Case = "ray_traced+semi-opaque+integrated".parse().unwrap();
+        assert_eq!((case.picture, case.semi_opaque), (Some(Shading::Integrated), true));
     }
 
     #[test]
     fn one_case_can_be_typed_in_two_ways() {
-        let [a, b, c] = ["ray_traced:samples=64", "ray-traced:seed=0,samples=64", "ray_traced:samples=64+integrated"]
-            .map(|text| text.parse::<Case>().unwrap());
-        assert!(a.is(&b) && !a.is(&c));
+        let [a, b] =
+            ["ray_traced:samples=64", "ray-traced:seed=0,samples=64"].map(|text| text.parse::<Case>().unwrap());
+        let [c, d] = ["integrated", "semi_opaque"].map(|addition| format!("ray_traced:samples=64+{addition}"));
+        assert!(a.is(&b) && !a.is(&c.parse().unwrap()) && !a.is(&d.parse().unwrap()));
     }
 
     #[test]
@@ -131,6 +145,9 @@ mod tests {
         assert!(reason("ray_traced:tries=3").contains("unknown field `tries`"), "{}", reason("ray_traced:tries=3"));
         assert!(reason("ray_traced:samples=many").contains("invalid type: string \"many\""));
         assert!(reason("ray_traced:samples=0").contains("samples"));
-        assert_eq!(reason("ray_traced+painted"), "unknown picture 'painted'; there are integrated, modulated");
+        let expected = "expected, each once";
+        for wrong in ["ray_traced+painted", "ray_traced+integrated+modulated", "ray_traced+semi-opaque+semi_opaque"] {
+            assert!(reason(wrong).ends_with(expected), "{wrong}");
+        }
     }
 }

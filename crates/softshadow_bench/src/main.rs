@@ -6,7 +6,11 @@
 //! the largest stage. `passes` is the share of the wall time that passes explain, in runs of their own in which every pass is a
 //! submission.
 //!
-//! Errors of a case with a picture are those of its visibility.
+//! Errors of a case with a picture are those of its visibility. Half opaque scenes have references of their own.
+//!
+//! A waving scene moves from frame to frame: `refit ms` is what the library takes to come from the last frame to this one, `build
+//! ms` what the same vertices cost as a new scene, in turns; `ms` is the shadows of the frame that was refitted. Both must give the same
+//! values.
 
 mod case;
 mod error;
@@ -18,6 +22,7 @@ mod scenes;
 mod session;
 mod statistics;
 mod table;
+mod waving;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -27,6 +32,7 @@ use clap::Parser;
 use softshadow::{DeviceChoice, Technique};
 
 use crate::case::{Case, parse_technique};
+use crate::ratios::Chosen;
 use crate::session::Session;
 
 /// Measures shadow techniques: time, bytes and error against a reference of many rays.
@@ -36,12 +42,16 @@ pub(crate) struct Arguments {
     /// A scene's name, or a mesh such as cow.obj; may be given several times
     #[arg(long = "scene", value_name = "NAME", default_values = ["fork", "bunny"])]
     pub(crate) scenes: Vec<String>,
-    /// A technique with settings, such as depth-complexity:samples=64,exact_area=true; +integrated or +modulated adds the picture
+    /// A technique with settings, such as depth-complexity:samples=64,exact_area=true; +integrated or
+    /// +modulated adds the picture, +semi-opaque lets half of the light through every triangle
     #[arg(long = "technique", value_name = "CASE", value_parser = str::parse::<Case>)]
     pub(crate) cases: Vec<Case>,
-    /// Measures the ratios of the papers, too: every case that they name, and what is published
-    #[arg(long)]
-    pub(crate) ratios: bool,
+    /// Measures ratios, too: every case that they name, beside what is published and asked
+    #[arg(long, value_name = "WHICH", num_args = 0..=1, default_missing_value = "all")]
+    pub(crate) ratios: Option<Chosen>,
+    /// Lets every scene sway for so many frames, too: milliseconds of refits, of scenes made anew, and of shadows
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) waving: Option<u32>,
     /// Pixels: a number for a square, or WIDTHxHEIGHT; may be given several times
     #[arg(long = "size", value_name = "PIXELS", value_parser = parse_size, default_values = ["512"])]
     pub(crate) sizes: Vec<[u32; 2]>,

@@ -16,6 +16,25 @@ use crate::statistics::median;
 /// Runs in which each pass is a submission of its own; the one in the middle is reported.
 const PASS_RUNS: usize = 3;
 
+/// A scene, and what is taken for true on it.
+pub(crate) struct Subject {
+    pub(crate) measured: Measured,
+    pub(crate) reference: Reference,
+}
+
+/// A scene as it is, and half opaque where a case asks for that.
+pub(crate) struct Subjects {
+    pub(crate) opaque: Subject,
+    pub(crate) semi_opaque: Option<Subject>,
+}
+
+impl Subjects {
+    /// What a case is measured on.
+    pub(crate) fn of(&self, case: &Case) -> &Subject {
+        self.semi_opaque.as_ref().filter(|_| case.semi_opaque).unwrap_or(&self.opaque)
+    }
+}
+
 /// What one case costs on one scene, and how wrong it is.
 #[derive(Debug, Clone)]
 pub(crate) struct Measurement {
@@ -66,8 +85,7 @@ pub(crate) struct Failure {
 /// Every case once to warm up and `repeats` times, taking turns; then its passes.
 pub(crate) fn take_turns(
     context: &Context,
-    measured: &Measured,
-    reference: &Reference,
+    subjects: &Subjects,
     cases: &[Case],
     repeats: u32,
 ) -> (Vec<Measurement>, Vec<Failure>) {
@@ -75,7 +93,7 @@ pub(crate) fn take_turns(
     let mut entered: Vec<(Case, Vec<Run>)> = cases.iter().map(|case| (case.clone(), Vec::new())).collect();
     // Turn 0 warms up: pipelines, uploads and buffers are made there. Who fails leaves.
     for _ in 0..=repeats {
-        entered.retain_mut(|(case, runs)| match run(context, measured, case, Timing::Device) {
+        entered.retain_mut(|(case, runs)| match run(context, &subjects.of(case).measured, case, Timing::Device) {
             Ok(run) => {
                 // Values are kept of the last run alone.
                 runs.iter_mut().for_each(|earlier: &mut Run| earlier.seen.values = Vec::new());
@@ -90,7 +108,7 @@ pub(crate) fn take_turns(
     }
     let mut measurements = Vec::new();
     for (case, runs) in entered {
-        match conclude(context, measured, reference, case.clone(), runs) {
+        match conclude(context, subjects.of(&case), case.clone(), runs) {
             Ok(measurement) => measurements.push(measurement),
             Err(error) => failures.push(Failure { case, error }),
         }
@@ -100,8 +118,7 @@ pub(crate) fn take_turns(
 
 fn conclude(
     context: &Context,
-    measured: &Measured,
-    reference: &Reference,
+    Subject { measured, reference }: &Subject,
     case: Case,
     mut runs: Vec<Run>,
 ) -> Result<Measurement, BenchError> {
@@ -122,12 +139,14 @@ fn conclude(
     Ok(Measurement { case, wall_ms, call_ms, errors, info: last.info, passes })
 }
 
-struct Run {
-    seen: Visibility,
-    call_ms: f64,
+/// One call.
+pub(crate) struct Run {
+    pub(crate) seen: Visibility,
+    pub(crate) call_ms: f64,
 }
 
-fn run(context: &Context, measured: &Measured, case: &Case, timing: Timing) -> Result<Run, Error> {
+/// Calls the library as a person would.
+pub(crate) fn run(context: &Context, measured: &Measured, case: &Case, timing: Timing) -> Result<Run, Error> {
     let options = Options { timing, ..Options::default() };
     let lights = std::slice::from_ref(&measured.light);
     let Measured { scene, camera, .. } = measured;

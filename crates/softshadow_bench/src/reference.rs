@@ -28,7 +28,7 @@ struct Key {
     technique: Technique,
     adapter: String,
     driver: String,
-    /// Of every vertex, every triangle, the light and the camera.
+    /// Of every vertex, every triangle and its opacity, the light and the camera.
     fingerprint: u64,
     rms_standard_error: Option<f64>,
 }
@@ -39,6 +39,7 @@ impl Key {
         for mesh in measured.scene.meshes() {
             mesh.vertices.iter().flatten().for_each(|x| x.to_bits().hash(&mut hasher));
             mesh.triangles.hash(&mut hasher);
+            (0..mesh.triangles.len()).for_each(|triangle| mesh.opacity(triangle).to_bits().hash(&mut hasher));
         }
         format!("{:?} {:?}", measured.light, measured.camera).hash(&mut hasher);
         Self {

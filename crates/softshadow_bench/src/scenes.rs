@@ -20,6 +20,17 @@ pub(crate) struct Measured {
     pub(crate) camera: Camera,
 }
 
+impl Measured {
+    /// The same scene, of which every triangle lets half of the light pass.
+    pub(crate) fn semi_opaque(&self) -> Result<Self, BenchError> {
+        let mut meshes = self.scene.meshes().to_vec();
+        for mesh in &mut meshes {
+            (mesh.material.opacity, mesh.opacities) = (0.5, Vec::new());
+        }
+        Ok(Self { scene: Scene::new(meshes)?, ..self.clone() })
+    }
+}
+
 /// A mesh file on the ground.
 struct Model {
     file: &'static str,

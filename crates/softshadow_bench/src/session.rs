@@ -9,11 +9,12 @@ use softshadow::Context;
 use crate::Arguments;
 use crate::case::Case;
 use crate::error::BenchError;
-use crate::measure::{Failure, take_turns};
+use crate::measure::{Failure, Subject, Subjects, take_turns};
 use crate::ratios::{self, MeasuredRatio};
 use crate::reference;
 use crate::report::{self, Environment, Place, Row};
 use crate::scenes::{self, Measured};
+use crate::waving::{self, Waving};
 
 /// Measured where neither cases nor ratios are asked for.
 const DEFAULT_CASES: [&str; 5] = [
@@ -46,6 +47,17 @@ struct RatioLine<'a> {
     environment: &'a Environment,
 }
 
+/// A line of JSON about a case on a scene that moves.
+#[derive(Serialize)]
+struct WavingLine<'a> {
+    kind: &'static str,
+    scene: &'a str,
+    size: [u32; 2],
+    #[serde(flatten)]
+    waving: &'a Waving,
+    environment: &'a Environment,
+}
+
 /// A line of JSON about what was not measured.
 #[derive(Serialize)]
 struct AbsentLine<'a> {
@@ -60,8 +72,8 @@ impl<'a> Session<'a> {
     pub(crate) fn new(arguments: &'a Arguments, out: &'a mut dyn Write) -> Result<Self, BenchError> {
         let mut cases = Vec::new();
         arguments.cases.iter().for_each(|case| ratios::add_case(&mut cases, case.clone()));
-        if arguments.ratios {
-            ratios::cases()?.into_iter().for_each(|case| ratios::add_case(&mut cases, case));
+        if let Some(chosen) = arguments.ratios {
+            ratios::cases(chosen)?.into_iter().for_each(|case| ratios::add_case(&mut cases, case));
         }
         if cases.is_empty() {
             cases = DEFAULT_CASES.iter().map(|text| text.parse()).collect::<Result<_, _>>()?;
@@ -104,28 +116,56 @@ impl<'a> Session<'a> {
         let (name, triangles) = (&measured.name, measured.scene.triangle_count());
         self.say(&format!("\n{name}, {width} × {height}, {triangles} triangles"))?;
         let technique = &self.arguments.reference;
-        let reference = reference::make(&self.context, measured, technique, self.arguments.reference_cache.as_deref())?;
-        let standard_error = reference.rms_standard_error.map_or("unknown".into(), |e| format!("{e:.5}"));
+        let subject = |measured: Measured| {
+            let folder = self.arguments.reference_cache.as_deref();
+            Ok::<_, BenchError>(Subject {
+                reference: reference::make(&self.context, &measured, technique, folder)?,
+                measured,
+            })
+        };
+        let semi_opaque = self.cases.iter().any(|case| case.semi_opaque);
+        let subjects = Subjects {
+            opaque: subject(measured.clone())?,
+            semi_opaque: semi_opaque.then(|| subject(measured.semi_opaque()?)).transpose()?,
+        };
+        let standard_error = subjects.opaque.reference.rms_standard_error;
+        let standard_error = standard_error.map_or("unknown".into(), |e| format!("{e:.5}"));
         let samples = u64::from(technique.samples()) * u64::from(technique.passes());
         self.say(&format!("reference: {} with {samples} samples, standard error {standard_error}", technique.name()))?;
-        let (measurements, failures) =
-            take_turns(&self.context, measured, &reference, &self.cases, self.arguments.repeats);
+        let (measurements, failures) = take_turns(&self.context, &subjects, &self.cases, self.arguments.repeats);
         let environment = self.environment.clone();
         let place = Place {
             scene: &measured.name,
             size: measured.camera.size(),
             reference: technique,
-            reference_standard_error: reference.rms_standard_error,
+            reference_standard_error: subjects.opaque.reference.rms_standard_error,
             environment: &environment,
         };
         for measurement in &measurements {
-            self.record(&Row::of(place, measurement))?;
+            let reference_standard_error = subjects.of(&measurement.case).reference.rms_standard_error;
+            self.record(&Row::of(Place { reference_standard_error, ..place }, measurement))?;
         }
         self.say(&format!("\n{}", report::summary(&measurements)))?;
-        if self.arguments.ratios {
-            self.say_ratios(place, &ratios::of(&measurements)?)?;
+        if let Some(chosen) = self.arguments.ratios {
+            self.say_ratios(place, &ratios::of(&measurements, chosen)?)?;
         }
         self.say(&format!("{}\n{}", report::passes(&measurements), report::bytes(&measurements)))?;
+        let mut failures = failures;
+        if let Some(frames) = self.arguments.waving {
+            let all = self.cases.iter().filter(|case| !failures.iter().any(|failure| failure.case.is(case)));
+            let (waving, failed) = waving::measure(&self.context, &subjects, all, frames);
+            for row in &waving {
+                self.record(&WavingLine {
+                    kind: "waving",
+                    scene: name,
+                    size: place.size,
+                    waving: row,
+                    environment: &environment,
+                })?;
+            }
+            self.say(&waving::table(&waving).to_string())?;
+            failures.extend(failed);
+        }
         for Failure { case, error } in &failures {
             self.failed += 1;
             self.absent("failure", name, place.size, Some(&case.text), error)?;

@@ -37,6 +37,8 @@ fn a_run_measures_says_and_records() {
             "--technique",
             "depth_complexity:samples=64+modulated",
             "--ratios",
+            "--waving",
+            "2",
             "--reference",
             "ray_traced:samples=64,passes=4,pattern=low_discrepancy",
             "--reference-cache",
@@ -80,14 +82,28 @@ fn a_run_measures_says_and_records() {
         assert!(row["environment"]["adapter"]["driver"].is_string());
     }
 
-    // The kept reference serves the next run, bit by bit.
+    // Half of the light passes, and the reference knows it.
+    let half = of("measurement").into_iter().find(|row| row["semi_opaque"] == true).unwrap();
+    assert!(rmse(half) < 0.03 && half["reference_standard_error"] != soft["reference_standard_error"], "{half}");
+    for row in of("waving") {
+        let frames = |key: &str| row[key].as_array().unwrap().iter().filter(|ms| ms.as_f64().unwrap() > 0.0).count();
+        assert_eq!(["refit_ms", "build_ms", "wall_ms", "call_ms"].map(frames), [2; 4], "{row}");
+        assert_eq!(
+            (&row["differing_receivers"], &row["rebuild_reasons"]),
+            (&0.into(), &serde_json::json!([])),
+            "{row}"
+        );
+    }
+    assert_eq!(of("waving").len(), of("measurement").len());
+
+    // The kept references serve the next run, bit by bit.
     let kept = std::fs::read_dir(&cache).unwrap().map(|f| f.unwrap().metadata().unwrap().modified().unwrap());
     let kept: Vec<_> = kept.collect();
     let (_, again) = run();
     assert_eq!(again[0]["errors"], hard["errors"]);
     let still: Vec<_> =
         std::fs::read_dir(&cache).unwrap().map(|f| f.unwrap().metadata().unwrap().modified().unwrap()).collect();
-    assert_eq!((kept.len(), &kept), (1, &still));
+    assert_eq!((kept.len(), &kept), (2, &still));
 }
 
 #[test]
@@ -119,6 +135,8 @@ fn nonsense_is_refused_with_the_way_out() {
         (&["--technique", "ray_traced:rays=3"], "unknown field `rays`"),
         (&["--size", "0"], "WIDTHxHEIGHT"),
         (&["--repeats", "0"], "0 is not in 1.."),
+        (&["--waving", "0"], "0 is not in 1.."),
+        (&["--ratios", "some"], "[possible values: all, published]"),
         (&["--scene", "fork", "--size", "8", "--reference", "hard_shadow_map"], "has no standard error"),
         (&["--device", "quantum"], "none of 'auto', 'gpu', 'software'"),
     ] {

@@ -9,7 +9,7 @@ import open3d as o3d
 from numpy.typing import NDArray
 
 from . import rays
-from .rays import Points
+from .rays import Points, Query
 
 
 class Open3D:
@@ -29,6 +29,6 @@ class Open3D:
         ms = (time.perf_counter() - start) * 1e3
         return ~hidden.numpy().reshape(len(origins), len(targets)), ms
 
-    def visibility(self, origins: Points, normals: Points, targets: Points) -> tuple[Points, float]:
+    def visibility(self, query: Query) -> tuple[Points, float]:
         """(receivers,) and milliseconds of the queries."""
-        return rays.visibility(self.visible, origins, normals, targets)
+        return rays.visibility(self.visible, query)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from trimesh.ray.ray_pyembree import RayMeshIntersector
 
 from . import rays
-from .rays import Points
+from .rays import Points, Query
 
 
 class Trimesh:
@@ -29,6 +29,6 @@ class Trimesh:
         ms = (time.perf_counter() - start) * 1e3
         return ~hidden.reshape(len(origins), len(targets)), ms
 
-    def visibility(self, origins: Points, normals: Points, targets: Points) -> tuple[Points, float]:
+    def visibility(self, query: Query) -> tuple[Points, float]:
         """(receivers,) and milliseconds of the queries."""
-        return rays.visibility(self.visible, origins, normals, targets)
+        return rays.visibility(self.visible, query)

@@ -2,7 +2,7 @@
 
 Open3D, trimesh with embreex, and a kernel of Mitsuba get our stored receivers and our light samples, in one process
 and taking turns; a warm-up, then medians. Of ours the time from the camera to visibility counts, receivers included, of
-the others the query alone.
+the others the query alone. What takes too long for turns is measured in its first, and says so.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import argparse
 import importlib
 import statistics
 import sys
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import Any
 
@@ -26,7 +26,7 @@ from softshadow.lights import SphereLight, SunLight
 from softshadow.techniques import DepthComplexity, RayTraced, Technique
 from softshadow.visibility import visibility
 
-from .rays import Points
+from .rays import Points, Query
 from .scenes import Measured, find
 
 LEVELS = (0.05, 0.02, 0.01, 0.005)
@@ -35,6 +35,7 @@ PEERS = {
     "Open3D": ("embree_open3d", "Open3D", (16, 64, 144, 256, 400)),
     "trimesh": ("embree_trimesh", "Trimesh", (16, 64, 144, 256)),
     "Mitsuba kernel": ("mitsuba_kernel", "Mitsuba", (16, 64, 144, 256, 400)),
+    "Mitsuba kernel, 16 probes": ("mitsuba_kernel", "Probing", (64, 144, 256, 400)),
 }
 """Module, class and sample counts. Another tracer is another row."""
 OURS: tuple[Technique, ...] = (
@@ -43,6 +44,9 @@ OURS: tuple[Technique, ...] = (
     DepthComplexity(samples=200, passes=2),
 )
 REFERENCE = RayTraced(samples=256, passes=16, pattern="low_discrepancy", seed=99)
+PROBES = 16
+PATIENCE_S = 5.0
+"""What takes longer than this in its warm-up has no other turn: that one counts."""
 
 Run = Callable[[], tuple[Points, float]]
 
@@ -56,6 +60,8 @@ class Row:
     ours: bool
     times_ms: list[float] = field(default_factory=list)
     rmse: float = float("nan")
+    is_slow: bool = False
+    """Measured in its first turn alone, which makes its pipelines, too."""
 
     @property
     def ms(self) -> float:
@@ -72,6 +78,7 @@ class Beside:
     receivers: int
     in_penumbra: int
     standard_error: float
+    reference: RayTraced
     rows: list[Row]
     refused: list[str]
     """Techniques of ours that do not serve this model, each with its reason."""
@@ -116,10 +123,11 @@ def installed() -> tuple[dict[str, tuple[type[Any], tuple[int, ...]]], list[str]
 
 def beside(
     model: Measured,
-    tracers: dict[str, tuple[type[Any], tuple[int, ...]]],
-    techniques: tuple[Technique, ...] | list[Technique],
+    tracers: Mapping[str, tuple[type[Any], Sequence[int]]],
+    techniques: Sequence[Technique],
     rounds: int,
     device: Device = "auto",
+    reference: RayTraced = REFERENCE,
 ) -> Beside:
     """Everything on the same receivers, taking turns."""
     if isinstance(model.light, SphereLight | SunLight):
@@ -128,7 +136,7 @@ def beside(
     if placed.positions is None or placed.normals is None:
         raise AssertionError("receivers were asked for")
     seen = placed.valid
-    origins, normals = placed.positions[seen].astype(np.float32), placed.normals[seen]
+    origins, normals = model.stored(placed.positions[seen]), placed.normals[seen]
 
     def ours(technique: Technique, standard_error: bool = False) -> Any:
         return visibility(
@@ -144,21 +152,27 @@ def beside(
         result = ours(technique)
         return result.values[seen], result.info["wall_ms"]
 
-    reference = ours(REFERENCE, standard_error=True)
-    truth, standard_error = reference.values[seen], reference.standard_error[seen]
+    def on_light(samples: int, seed: int) -> Points:
+        return model.stored(light_points(model.light, samples, scene=model.scene, seed=seed).positions.reshape(-1, 3))
+
+    true = ours(reference, standard_error=True)
+    truth, standard_error = true.values[seen], true.standard_error[seen]
     penumbra = (truth > 0.002) & (truth < 0.998)
     entered: list[tuple[Row, Run]] = []
     for technique in techniques:
         samples = getattr(technique, "samples", 1) * getattr(technique, "passes", 1)
-        entered.append((Row(technique.name, samples, ours=True), partial(timed, technique)))
+        entered.append((Row(named(technique), samples, ours=True), partial(timed, technique)))
     for name, (kind, counts) in tracers.items():
         tracer = kind(model.vertices, model.faces)
         for samples in counts:
-            targets = light_points(model.light, samples, scene=model.scene).positions.reshape(-1, 3).astype(np.float32)
-            entered.append((Row(name, samples, ours=False), partial(tracer.visibility, origins, normals, targets)))
+            targets = on_light(samples, RayTraced.seed)
+            query = Query(origins, normals, targets, probes=on_light(PROBES, RayTraced.seed + 1), seen=seen)
+            entered.append((Row(name, samples, ours=False), partial(tracer.visibility, query)))
     refused = []
     for turn in range(rounds + 1):
         for row, run in list(entered):
+            if turn and row.is_slow:
+                continue
             try:
                 values, ms = run()
             except SoftShadowError as error:
@@ -166,7 +180,8 @@ def beside(
                 entered.remove((row, run))
                 continue
             row.rmse = float(np.sqrt(np.mean((values[penumbra] - truth[penumbra]) ** 2)))
-            if turn:
+            row.is_slow |= turn == 0 and ms > 1e3 * PATIENCE_S
+            if turn or row.is_slow:
                 row.times_ms.append(ms)
     return Beside(
         model=model.name,
@@ -174,22 +189,37 @@ def beside(
         receivers=len(origins),
         in_penumbra=int(penumbra.sum()),
         standard_error=float(np.sqrt(np.mean(standard_error[penumbra] ** 2))),
+        reference=reference,
         rows=[row for row, _ in entered],
         refused=refused,
     )
 
 
+def named(technique: Technique) -> str:
+    """Its name, and the settings that are not its defaults; how many samples there are is said elsewhere."""
+    usual = type(technique)()
+    settings = [item.name for item in fields(technique) if item.name not in ("samples", "passes")]
+    changed = [name for name in settings if getattr(technique, name) != getattr(usual, name)]
+    return ", ".join([technique.name, *(f"{name}={getattr(technique, name)}" for name in changed)])
+
+
 def lines(found: Beside) -> list[str]:
     """Every row, as a table in Markdown."""
     width, height = found.size
-    samples = REFERENCE.samples * REFERENCE.passes
+    samples = found.reference.samples * found.reference.passes
+    table = []
+    for row in found.rows:
+        beaten = fastest([other for other in found.rows if not other.ours and other.samples == row.samples], np.inf)
+        ratio = f"{row.ms / beaten.ms:.2f}" if row.ours and beaten else ""
+        once = " (first turn)" if row.is_slow else ""
+        table.append(f"| {row.tracer} | {row.samples} | {row.ms:.0f}{once} | {row.rmse:.4f} | {ratio} |")
     return [
         f"**{found.model}**, {width} × {height}, {found.receivers:,} receivers, {found.in_penumbra:,} of them in the "
         f"penumbra; the reference has {samples:,} samples and a standard error of {found.standard_error:.4f}.",
         "",
-        "| tracer | samples | ms | RMSE in penumbra |",
-        "|---|---|---|---|",
-        *(f"| {row.tracer} | {row.samples} | {row.ms:.0f} | {row.rmse:.4f} |" for row in found.rows),
+        "| tracer | samples | ms | RMSE in penumbra | ms : fastest other with as many samples |",
+        "|---|---|---|---|---|",
+        *table,
         "",
     ]
 
@@ -200,9 +230,10 @@ def fastest(rows: list[Row], level: float) -> Row | None:
 
 
 def ratio_lines(found: Beside) -> list[str]:
-    """Our time over theirs, each as fast as it gets at an error, as a table in Markdown."""
+    """Our time over theirs, each as fast as it gets at an error, as a table in Markdown; last that over the fastest."""
     ours = list(dict.fromkeys(row.tracer for row in found.rows if row.ours))
     theirs = list(dict.fromkeys(row.tracer for row in found.rows if not row.ours))
+    theirs += ["fastest other"] * (len(theirs) > 1)
     table = [
         f"| ms ours : theirs at RMSE | {' | '.join(f'≤ {level}' for level in LEVELS)} |",
         "|---" * (len(LEVELS) + 1) + "|",
@@ -211,10 +242,12 @@ def ratio_lines(found: Beside) -> list[str]:
         for b in theirs:
             cells = []
             for level in LEVELS:
-                pair = [fastest([row for row in found.rows if row.tracer == name], level) for name in (a, b)]
+                their_rows = [row for row in found.rows if row.tracer == b or (b == "fastest other" and not row.ours)]
+                our_best = fastest([row for row in found.rows if row.tracer == a], level)
+                their_best = fastest(their_rows, level)
                 words = "–"
-                if pair[0] and pair[1]:
-                    words = f"{pair[0].ms / pair[1].ms:.2f} ({pair[0].samples} : {pair[1].samples} samples)"
+                if our_best and their_best:
+                    words = f"{our_best.ms / their_best.ms:.2f} ({our_best.samples} : {their_best.samples} samples)"
                 cells.append(words)
             table.append(f"| {a} : {b} | {' | '.join(cells)} |")
     return [*table, ""]

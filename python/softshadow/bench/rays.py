@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +15,22 @@ Visible = Callable[[Points, Points], tuple[NDArray[np.bool_], float]]
 _RAYS_AT_ONCE = 1 << 22
 
 
-def visibility(visible: Visible, origins: Points, normals: Points, targets: Points) -> tuple[Points, float]:
+@dataclass(frozen=True, eq=False)
+class Query:
+    """What each tracer is asked: the share of the targets above its horizon that each receiver sees."""
+
+    origins: Points
+    normals: Points
+    targets: Points
+    probes: Points
+    """A few other places on the light, for tracers that look for penumbrae first."""
+    seen: NDArray[np.bool_]
+    """(H, W): pixels with a receiver; receivers stand in the order of their pixels."""
+
+
+def visibility(visible: Visible, query: Query) -> tuple[Points, float]:
     """The visible share of the samples, those above the horizon, and milliseconds; in blocks that fit the memory."""
+    origins, normals, targets = query.origins, query.normals, query.targets
     step = max(_RAYS_AT_ONCE // len(targets), 1)
     parts, total = [], 0.0
     for start in range(0, len(origins), step):

@@ -1,9 +1,9 @@
 """The measured scenes: real meshes on a ground, placed so that their float32 coordinates are the same for everybody.
 
-The bounds are symmetric about the origin and 6 wide, the tallest model is 1 high. The library's local frame then only
-scales by a power of two, so positions in world units are float32 numbers, and another renderer traces exactly the same
-rays. Shipped scenes are rounded to float32, and their receivers anew: by far less than they are lifted off a surface.
-``softshadow-bench`` places its models in the same way.
+The library rounds positions to float32 about the centre of a scene's bounds, scaled by a power of two. About that
+centre its vertices, receivers and light samples are float32 numbers, so another renderer can trace exactly the same
+rays. Models stand in bounds that are symmetric about the origin and 6 wide, the tallest is 1 high: there world
+coordinates are such numbers themselves. ``softshadow-bench`` places its models in the same way.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -18,20 +19,56 @@ from numpy.typing import NDArray
 
 from softshadow import scenes
 from softshadow.camera import Camera, look_at
+from softshadow.errors import SceneError
 from softshadow.lights import Light, RectLight
 from softshadow.scene import Mesh, Scene
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Measured:
-    """A scene, its light and camera, and all its triangles as float32 corners."""
+    """A scene, its light and camera."""
 
     name: str
     scene: Scene
     light: Light
     camera: Camera
-    vertices: NDArray[np.float32]
-    faces: NDArray[np.uint32]
+
+    @cached_property
+    def center(self) -> NDArray[np.float64]:
+        """The middle of the scene's bounds in world coordinates, about which positions are float32 numbers."""
+        if self.scene.bounds is None:
+            raise SceneError(f"{self.name}: a scene without vertices has no center")
+        low, high = self.scene.bounds
+        center: NDArray[np.float64] = low * 0.5 + high * 0.5
+        return center
+
+    @cached_property
+    def vertices(self) -> NDArray[np.float32]:
+        """All corners about the center, rounded as the library rounds them."""
+        return (_joined(self.scene.meshes)[0] - self.center).astype(np.float32)
+
+    @cached_property
+    def faces(self) -> NDArray[np.uint32]:
+        """All triangles, three of the corners each, in the order of the library's ids."""
+        return _joined(self.scene.meshes)[1]
+
+    def stored(self, positions: NDArray[np.float64]) -> NDArray[np.float32]:
+        """Receivers or light samples of a result about the center, as the library stores them.
+
+        World coordinates have lost at most a rounding of float64 on their way; anything farther from a float32 number
+        was never one.
+
+        Raises
+        ------
+        SceneError
+            For positions that are no float32 numbers about the center.
+        """
+        about = positions - self.center
+        rounded = about.astype(np.float32)
+        largest = max(float(np.abs(positions).max(initial=0.0)), float(np.abs(self.center).max()))
+        if not (np.abs(rounded - about) <= 2.0**-52 * largest).all():
+            raise SceneError(f"{self.name}: positions are no float32 numbers about the center of the scene's bounds")
+        return rounded
 
 
 @dataclass(frozen=True)
@@ -73,8 +110,7 @@ def _shipped(name: str, size: int) -> Measured:
     shipped = scenes.load(name)
     look = shipped.camera
     camera = Camera(world_from_camera=look.world_from_camera, fov_y_deg=look.fov_y_deg, size=(size, size))
-    vertices, faces = _joined(shipped.scene.meshes)
-    return Measured(name, shipped.scene, shipped.light, camera, vertices.astype(np.float32), faces)
+    return Measured(name, shipped.scene, shipped.light, camera)
 
 
 def _on_ground(name: str, models: tuple[Model, ...], size: int) -> Measured:
@@ -84,8 +120,7 @@ def _on_ground(name: str, models: tuple[Model, ...], size: int) -> Measured:
     scene = Scene([*(_placed(model) for model in models), floor])
     light = RectLight(width=1.0, height=1.0, world_from_light=look_at((1.5, 3.0, 1.0), (0, -0.2, 0)))
     camera = Camera.look_at(eye=(2.2, 1.4, 3.0), target=(0, -0.1, 0), fov_y_deg=40, size=(size, size))
-    vertices, faces = _joined(scene.meshes)
-    return Measured(name, scene, light, camera, vertices.astype(np.float32), faces)
+    return Measured(name, scene, light, camera)
 
 
 def _placed(model: Model) -> Mesh:
