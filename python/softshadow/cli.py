@@ -116,6 +116,11 @@ def _doctor(options: argparse.Namespace) -> int:
 def _make(options: argparse.Namespace, make: Any) -> int:
     _check_output(options.output)
     scene, lights, camera = _scene_lights_camera(options)
+    if make is visibility and isinstance(lights, list) and output_format(options.output) == "png":
+        several = f"one for each of {len(lights)} lights"
+        raise SettingsError(
+            f"{options.output}: a PNG holds one grey image, not {several}; use another format or --light"
+        )
     settings = {"technique": options.technique, "device": options.device, "progress": _say_progress}
     result: Picture | Visibility = make(scene, lights, camera=camera, **settings)
     result.save(options.output)

@@ -46,7 +46,21 @@ def load(path: str | os.PathLike[str]) -> SceneFile:
     """Reads all that a file holds: ``.json``, or ``.glb``, ``.gltf``, ``.obj``, ``.ply`` and ``.stl`` without lights.
 
     A ``scene.json`` names meshes with their transforms and materials, lights in UsdLux's words, a camera and a unit
-    of length; ``scene.schema.json`` describes it.
+    of length; ``scene.schema.json`` describes it::
+
+        {"softshadow": 1,
+         "meters_per_unit": 1,
+         "meshes": [{"path": "bunny.ply", "translate": [0, 0.1, 0], "rotate_xyz_deg": [0, 90, 0], "scale": [2, 2, 2],
+                     "material": {"base_color": [0.8, 0.4, 0.2], "roughness": 0.5}, "opacity": 1}],
+         "lights": [{"type": "RectLight", "name": "key", "width": 1, "height": 1, "intensity": 17,
+                     "translate": [1.5, 3.5, 1], "target": [0, 0.3, 0]},
+                    {"type": "DistantLight", "angle": 0.53, "rotate_xyz_deg": [-50, -40, 0], "color": [1, 0.9, 0.7]}],
+         "camera": {"eye": [2.2, 1.9, 3], "target": [0, 0.4, 0], "fov_y_deg": 40, "size": [640, 480]}}
+
+    Lengths are in world units, angles in degrees, colours linear. Paths are relative to the file. A mesh may have
+    ``world_from_mesh``, four rows, instead of the three parts; a light ``world_from_light``. The radiance of a light is
+    color · intensity · 2^exposure. Meshes of another unit, which glTF always has (metres) and others with a
+    ``meters_per_unit`` of their own, are scaled to that of the scene.
 
     Parameters
     ----------

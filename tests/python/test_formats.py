@@ -190,6 +190,17 @@ def test_a_scene_file_brings_lights_and_a_camera(tmp_path):
     assert ss.load(tmp_path / "cube.obj").meters_per_unit is None
 
 
+def test_the_example_of_the_documentation_can_be_read(tmp_path):
+    text = ss.load.__doc__
+    text = text[text.index('{"softshadow"') : text.index("Lengths are in")]
+    cube_on_floor().export(tmp_path / "bunny.ply")
+    (tmp_path / "example.json").write_text(text)
+    file = ss.load(tmp_path / "example.json")
+    assert [type(light) for light in file.lights] == [ss.RectLight, ss.SunLight]
+    assert file.camera.size == (640, 480)
+    assert file.scene.meshes[0].base_color == pytest.approx((0.8, 0.4, 0.2))
+
+
 def test_meshes_are_scaled_to_the_unit_of_the_scene(tmp_path):
     (tmp_path / "cube.glb").write_bytes(WRITERS["cube.glb"](cube_on_floor()))
     entries = [{"path": "cube.glb"}, {"path": "cube.obj"}, {"path": "cube.obj", "meters_per_unit": 0.1}]
@@ -411,6 +422,14 @@ def test_every_command_writes_every_format(tmp_path, capsys, command, extension)
     assert capsys.readouterr().out == "", "stdout is for --json alone"
     reads = {"png": read_png, "npy": np.load, "npz": np.load, "csv": rows_of, "exr": read_exr}
     assert len(reads[extension](out)) > 0
+
+
+def test_a_map_of_several_lights_is_no_png_and_that_is_said_before_any_work(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(cli, "_say_progress", pytest.fail)
+    out = tmp_path / "map.png"
+    assert cli.main(["visibility", str(write_scene(tmp_path, lights=LIGHTS)), "-o", str(out), *SMALL]) == 2
+    assert "not one for each of 2 lights" in capsys.readouterr().err
+    assert not out.exists()
 
 
 def test_a_scene_file_without_lights_is_lit_from_above(tmp_path):
