@@ -446,11 +446,20 @@ fn random_changes_never_panic() {
         property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n"
     );
     let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+    // Blocks of a header that no reader looks at, for the same reason.
+    let binary_stl = [&[b'x'; 80][..], &2_u32.to_le_bytes(), &[0x3e; 100]].concat();
+    let (header, _) = ply.split_once("0 0 0\n").unwrap();
+    let header = header.replace("ascii", "binary_big_endian");
+    let corners: Vec<u8> = (0..12).flat_map(|i: u8| f32::from(i).to_be_bytes()).collect();
+    let faces = [[3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2], [3, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 3]].concat();
+    let binary_ply = [header.as_bytes(), &corners, &faces].concat();
     let files = [
         ("glb", glb_with(&TRIANGLE, &[0, 1, 2], &[node])),
         ("obj", obj.as_bytes().to_vec()),
-        ("ply", ply.as_bytes().to_vec()),
+        ("ply", ply.into_bytes()),
+        ("ply", binary_ply),
         ("stl", stl.as_bytes().to_vec()),
+        ("stl", binary_stl),
     ];
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
     let mut random = |below: usize| {
