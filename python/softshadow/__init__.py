@@ -34,6 +34,7 @@ from .light_samples import LightPoints, light_points
 from .lights import DiscLight, Light, PolygonLight, RectLight, SphereLight, SunLight
 from .picture import Picture, render
 from .scene import Mesh, Scene
+from .scene_file import SceneFile, load
 from .techniques import DepthComplexity, HardShadowMap, RayTraced, Technique
 from .visibility import Visibility, visibility
 
@@ -59,6 +60,7 @@ __all__ = [
     "RectLight",
     "Scene",
     "SceneError",
+    "SceneFile",
     "SceneFileNotFound",
     "SettingsError",
     "SoftShadowError",
@@ -72,6 +74,7 @@ __all__ = [
     "compare",
     "doctor",
     "light_points",
+    "load",
     "look_at",
     "render",
     "scenes",

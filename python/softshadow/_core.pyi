@@ -14,7 +14,9 @@ __all__ = [
     "check_technique",
     "compare",
     "default_material",
+    "exr",
     "light_points",
+    "load_scene_file",
     "look_at",
     "png_grey16",
     "png_srgb8",
@@ -80,6 +82,26 @@ class _ShippedScene(TypedDict):
     light: _ShippedLight
     camera: _ShippedCamera
 
+class _FileLight(TypedDict):
+    name: str
+    shape: str
+    sizes: list[float]
+    world_from_light: _Matrix
+    radiance: list[float]
+
+class _FileCamera(TypedDict):
+    eye: list[float]
+    target: list[float]
+    up: list[float] | None
+    fov_y_deg: float
+    size: list[int]
+
+class _SceneFile(TypedDict):
+    scene: Scene
+    lights: list[_FileLight]
+    camera: _FileCamera | None
+    meters_per_unit: float | None
+
 @final
 class Context:
     def __new__(cls, device: str) -> Context: ...
@@ -134,8 +156,10 @@ def technique_defaults() -> str: ...
 def check_technique(technique: str) -> None: ...
 def shipped_names() -> list[str]: ...
 def shipped_scene(name: str) -> _ShippedScene: ...
+def load_scene_file(path: str) -> _SceneFile: ...
 def png_grey16(values: NDArray[np.float32], size: tuple[int, int]) -> bytes: ...
 def png_srgb8(colors: NDArray[np.uint8], size: tuple[int, int]) -> bytes: ...
+def exr(channels: Sequence[tuple[str, NDArray[np.float32]]], size: tuple[int, int], info: str) -> bytes: ...
 def visibility(
     context: Context,
     scene: Scene,

@@ -26,6 +26,8 @@ WHITE = (1.0, 1.0, 1.0)
 class Light(ByValue, ABC):
     """Base of all lights; only its kinds can be made."""
 
+    name: str
+
     @abstractmethod
     def _built(self) -> _core.Light:
         """The checked light of the core."""
@@ -45,6 +47,8 @@ class RectLight(Light):
         Linear red, green, blue.
     texture : (h, w, 3) float, optional
         Multiplies the radiance; row 0 lies at local +Y. Results then have a last axis of 3.
+    name : str
+        What columns and channels of saved results are called.
 
     Raises
     ------
@@ -57,6 +61,7 @@ class RectLight(Light):
     world_from_light: NDArray[np.float64]
     radiance: tuple[float, float, float] = WHITE
     texture: NDArray[np.float32] | None = None
+    name: str = ""
 
     def __post_init__(self) -> None:
         set_fields(
@@ -85,6 +90,8 @@ class DiscLight(Light):
         Pose of the light.
     radiance : (3,) float
         Linear red, green, blue.
+    name : str
+        What columns and channels of saved results are called.
 
     Raises
     ------
@@ -95,6 +102,7 @@ class DiscLight(Light):
     radius: float
     world_from_light: NDArray[np.float64]
     radiance: tuple[float, float, float] = WHITE
+    name: str = ""
 
     def __post_init__(self) -> None:
         set_fields(self, radius=real("light radius", self.radius), **_pose_and_radiance(self))
@@ -116,6 +124,8 @@ class SphereLight(Light):
         Pose of the light; only its centre matters.
     radiance : (3,) float
         Linear red, green, blue.
+    name : str
+        What columns and channels of saved results are called.
 
     Raises
     ------
@@ -126,6 +136,7 @@ class SphereLight(Light):
     radius: float
     world_from_light: NDArray[np.float64]
     radiance: tuple[float, float, float] = WHITE
+    name: str = ""
 
     def __post_init__(self) -> None:
         set_fields(self, radius=real("light radius", self.radius), **_pose_and_radiance(self))
@@ -147,6 +158,8 @@ class PolygonLight(Light):
         Pose of the light.
     radiance : (3,) float
         Linear red, green, blue.
+    name : str
+        What columns and channels of saved results are called.
 
     Raises
     ------
@@ -157,6 +170,7 @@ class PolygonLight(Light):
     outline: NDArray[np.float64]
     world_from_light: NDArray[np.float64]
     radiance: tuple[float, float, float] = WHITE
+    name: str = ""
 
     def __post_init__(self) -> None:
         outline = frozen(floats("light outline", self.outline, ("n", 2)))
@@ -184,6 +198,8 @@ class SunLight(Light):
         The world's up axis.
     radiance : (3,) float
         Linear red, green, blue.
+    name : str
+        What columns and channels of saved results are called.
 
     Raises
     ------
@@ -197,6 +213,7 @@ class SunLight(Light):
     diameter_deg: float = 0.53
     up: str = "y"
     radiance: tuple[float, float, float] = WHITE
+    name: str = ""
 
     def __post_init__(self) -> None:
         set_fields(
@@ -206,6 +223,7 @@ class SunLight(Light):
             diameter_deg=real("sun diameter_deg", self.diameter_deg),
             up=choice("sun up", self.up, ("y", "z")),
             radiance=color("light radiance", self.radiance),
+            name=str(self.name),
         )
         self._built()
 
@@ -228,6 +246,7 @@ def _pose_and_radiance(light: Any) -> dict[str, object]:
     return {
         "world_from_light": matrix("world_from_light", light.world_from_light),
         "radiance": color("light radiance", light.radiance),
+        "name": str(light.name),
     }
 
 

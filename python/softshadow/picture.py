@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,8 +16,9 @@ from .camera import Camera
 from .checks import choice, color, memory_limit_bytes, real
 from .device import Device, announce, context
 from .errors import SettingsError
-from .files import png_or_npy, write
+from .files import output_format, write, write_csv, write_npz
 from .lights import Light, built_lights
+from .result_files import arrays_of, names_of, places_of, rgb
 from .scene import Scene
 from .techniques import RayTraced, Technique, technique_json
 from .visibility import Progress, Visibility, callback, receivers_of, scene_of, shaped
@@ -46,7 +48,19 @@ class Picture:
         return self.visibility.info
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes ``.png`` (sRGB) or ``.npy`` (the linear colours).
+        """Writes a file of the kind that its extension names.
+
+        ``.png``
+            sRGB, 8 bits.
+        ``.npy``
+            The linear colours.
+        ``.npz``
+            `linear`, `srgb`, and what :meth:`Visibility.save` writes.
+        ``.csv``
+            A row for each pixel: `column` and `row` from the upper left corner, linear `R`, `G` and `B`,
+            `valid` as 0 or 1.
+        ``.exr``
+            Channels `R`, `G`, `B` of linear float32; `info` as JSON text in the attribute `softshadow`.
 
         Raises
         ------
@@ -55,7 +69,19 @@ class Picture:
         OSError
             Where the file cannot be written.
         """
-        write(path, self._repr_png_() if png_or_npy(path) == "png" else self.linear)
+        match output_format(path):
+            case "png":
+                write(path, self._repr_png_())
+            case "npy":
+                write(path, self.linear)
+            case "npz":
+                write_npz(path, {"linear": self.linear, "srgb": self.srgb, **arrays_of(self.visibility)})
+            case "csv":
+                seen = self.visibility
+                write_csv(path, places_of(seen) | rgb(self.linear) | {"valid": seen.valid.ravel()})
+            case "exr":
+                height, width, _ = self.linear.shape
+                write(path, _core.exr(list(rgb(self.linear).items()), (width, height), json.dumps(self.info)))
 
     def _repr_png_(self) -> bytes:
         height, width, _ = self.srgb.shape
@@ -126,7 +152,8 @@ def render(
         memory_limit=memory_limit_bytes(memory_limit),
         progress=callback(progress),
     )
-    seen = shaped(arrays["visibility"], (len(built),) if several else (), where.shape)
+    names = names_of(lights if isinstance(lights, Sequence) else [lights])
+    seen = shaped(arrays["visibility"], (len(built),) if several else (), where.shape, names)
     announce(device, seen.info["adapter"])
     return Picture(
         linear=arrays["linear"].reshape(*where.shape, 3),

@@ -111,7 +111,10 @@ class Scene:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Scene:
-        """Reads a ``.glb``, ``.gltf`` or ``.obj`` file; what is left out is listed in :attr:`notes`.
+        """The meshes of a ``.glb``, ``.gltf``, ``.obj``, ``.ply``, ``.stl`` or ``scene.json`` file.
+
+        What is left out is listed in :attr:`notes`. Lights and camera of a ``scene.json`` come with
+        :func:`softshadow.load`.
 
         Raises
         ------
@@ -119,12 +122,10 @@ class Scene:
             Where there is no such file; also a ``FileNotFoundError``.
         SceneError
             For an unknown format and a broken file.
+        TooLargeError
+            For more bytes or triangles than a scene may have.
         """
-        try:
-            name = os.fspath(path)
-        except TypeError:
-            raise SceneError(f"scene: a path expected, got {path!r:.80}") from None
-        return cls._from_core(_core.Scene.load(name))
+        return cls._from_core(_core.Scene.load(path_name(path)))
 
     @classmethod
     def _from_core(cls, built: _core.Scene) -> Scene:
@@ -248,6 +249,14 @@ class Scene:
 
     def __repr__(self) -> str:
         return f"<Scene: {len(self.meshes)} meshes, {self.triangle_count} triangles>"
+
+
+def path_name(path: object) -> str:
+    """A path as text."""
+    try:
+        return os.fsdecode(path)  # type: ignore[arg-type]
+    except TypeError:
+        raise SceneError(f"scene: a path expected, got {path!r:.80}") from None
 
 
 def _built(meshes: tuple[Mesh, ...], notes: tuple[str, ...]) -> _core.Scene:

@@ -16,8 +16,9 @@ from .camera import Camera
 from .checks import floats, memory_limit_bytes
 from .device import Device, announce, context
 from .errors import SceneError, SettingsError
-from .files import png_or_npy, write
+from .files import output_format, write, write_csv, write_npz
 from .lights import Light, built_lights
+from .result_files import arrays_of, channels_of, columns_of, names_of
 from .scene import Scene
 from .techniques import DepthComplexity, RayTraced, Technique, technique_json
 
@@ -47,6 +48,10 @@ class Visibility:
     visible_samples : bool, the shape of one value's array with a last axis of samples, or None
         Which light samples of the last pass are visible, in the order of :func:`light_points`: those to which anything
         passes, so that semi-opaque triangles alone hide none.
+    points : float64, (points, 3), or None
+        The receivers as they were given; None for a camera.
+    light_names : tuple of str
+        A name for each light that no other has: its own, or ``light0`` and so on by its place.
     info : dict
         What made the result: adapter, technique, settings, times and bytes.
     """
@@ -58,25 +63,62 @@ class Visibility:
     normals: NDArray[np.float32] | None
     triangles: NDArray[np.int64] | None
     visible_samples: NDArray[np.bool_] | None
+    points: NDArray[np.float64] | None
+    light_names: tuple[str, ...]
     info: dict[str, Any]
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes ``.png`` (16-bit linear grey, black where nothing is seen) or ``.npy`` (the values).
+        """Writes a file of the kind that its extension names.
+
+        ``.png``
+            16-bit linear grey, black where nothing is seen.
+        ``.npy``
+            The values.
+        ``.npz``
+            All arrays that are there, by their names here, `light_names`, and `info` as JSON text.
+        ``.csv``
+            A row for each receiver: `x`, `y` and `z` of points as given, or `column` and `row` of a pixel from the
+            upper left corner (and `x`, `y`, `z` where positions were asked for); visibility and standard error;
+            `valid` as 0 or 1.
+        ``.exr``
+            Channels of linear float32: visibility and standard error, `valid`, and `position` and `normal` where asked
+            for; `info` as JSON text in the attribute `softshadow`.
+
+        Visibility is called ``visibility`` for a light without a name, else ``visibility.NAME``, and ends in ``.R``,
+        ``.G``, ``.B`` where it is coloured; standard errors likewise. OpenEXR knows printable ASCII only: other letters
+        of a name become ``_``.
 
         Raises
         ------
         SettingsError
-            For another extension, and for a PNG of anything but one grey image.
+            For another extension, for a PNG of anything but one grey image, and for an EXR of points.
         OSError
             Where the file cannot be written.
         """
-        if png_or_npy(path) == "npy":
-            write(path, self.values)
-        elif (png := self._repr_png_()) is not None:
-            write(path, png)
-        else:
-            words = f"a PNG holds one grey image, not values of shape {self.values.shape}; use .npy"
+        match output_format(path):
+            case "npy":
+                write(path, self.values)
+            case "npz":
+                write_npz(path, arrays_of(self))
+            case "csv":
+                write_csv(path, columns_of(self))
+            case "exr":
+                write(path, self._exr(path))
+            case "png":
+                write(path, self._png(path))
+
+    def _png(self, path: str | os.PathLike[str]) -> bytes:
+        png = self._repr_png_()
+        if png is None:
+            words = f"a PNG holds one grey image, not values of shape {self.values.shape}; use .npy, .npz or .csv"
             raise SettingsError(f"{os.fspath(path)}: {words}")
+        return png
+
+    def _exr(self, path: str | os.PathLike[str]) -> bytes:
+        if self.valid.ndim != 2:
+            raise SettingsError(f"{os.fspath(path)}: an EXR holds images, not points; use .npy, .npz or .csv")
+        height, width = self.valid.shape
+        return _core.exr(list(channels_of(self).items()), (width, height), json.dumps(self.info))
 
     def _repr_png_(self) -> bytes | None:
         if self.valid.ndim != 2 or self.values.shape != self.valid.shape:
@@ -156,6 +198,7 @@ def visibility(
     decides_all = isinstance(technique, DepthComplexity) or (isinstance(technique, RayTraced) and technique.probes == 0)
     if sample_masks and not decides_all:
         raise SettingsError("sample_masks: only RayTraced without probes and DepthComplexity decide every sample")
+    given, names = where.points, names_of(lights if isinstance(lights, Sequence) else [lights])
     arrays = _core.visibility(
         context(device),
         scene_of(scene),
@@ -168,7 +211,7 @@ def visibility(
         sample_masks=bool(sample_masks),
         progress=callback(progress),
     )
-    result = shaped(arrays, (len(built),) if several else (), where.shape)
+    result = shaped(arrays, (len(built),) if several else (), where.shape, names, given)
     announce(device, result.info["adapter"])
     return result
 
@@ -179,6 +222,12 @@ class WhereReceived:
 
     arguments: dict[str, Any]
     shape: tuple[int, ...]
+
+    @property
+    def points(self) -> NDArray[np.float64] | None:
+        """A copy of the points, which the caller may change; None for a camera."""
+        points: NDArray[np.float64] | None = self.arguments["points"]
+        return None if points is None else points.copy()
 
 
 def receivers_of(camera: object, points: ArrayLike | None, normals: ArrayLike | None) -> WhereReceived:
@@ -210,7 +259,13 @@ def callback(progress: Progress | None) -> Progress | None:
     return progress
 
 
-def shaped(arrays: _core._VisibilityArrays, leading: tuple[int, ...], shape: tuple[int, ...]) -> Visibility:
+def shaped(
+    arrays: _core._VisibilityArrays,
+    leading: tuple[int, ...],
+    shape: tuple[int, ...],
+    light_names: tuple[str, ...],
+    points: NDArray[np.float64] | None = None,
+) -> Visibility:
     """The core's flat arrays in their public shapes: `leading` is (lights,) or nothing."""
     channels = arrays["channels"]
     full = leading + shape + ((channels,) if channels > 1 else ())
@@ -224,5 +279,7 @@ def shaped(arrays: _core._VisibilityArrays, leading: tuple[int, ...], shape: tup
         normals=None if placed is None else placed["normals"].reshape(*shape, 3),
         triangles=None if placed is None else placed["triangles"].reshape(shape),
         visible_samples=None if seen is None else seen.reshape(*leading, *shape, info["technique"]["samples"]),
+        points=points,
+        light_names=light_names,
         info=info,
     )

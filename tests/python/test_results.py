@@ -294,7 +294,7 @@ def test_what_cannot_be_saved_is_refused(scene, floor_points, tmp_path):
         assert result._repr_png_() is None
         with pytest.raises(ss.SettingsError, match="npy"):
             result.save(tmp_path / "map.png")
-    for name in ("map.exr", "map", "map.png.txt"):
+    for name in ("map.tif", "map", "map.png.txt"):
         with pytest.raises(ss.SettingsError, match="unknown format"):
             points.save(tmp_path / name)
     with pytest.raises(ss.SettingsError, match="path"):

@@ -1,4 +1,4 @@
-//! Images as the bytes of a PNG file.
+//! Images as the bytes of a PNG or OpenEXR file.
 
 use std::borrow::Cow;
 
@@ -28,4 +28,17 @@ pub(crate) fn png_srgb8(
 ) -> PyResult<Cow<'static, [u8]>> {
     let colors = colors.as_slice()?.to_vec();
     detached(py, || image_file::png_srgb8_bytes(&colors, size)).map(Cow::Owned)
+}
+
+/// Named channels of linear float32, a value a pixel, as an OpenEXR file; `size` is `[width, height]`.
+#[pyfunction]
+pub(crate) fn exr(
+    py: Python<'_>,
+    channels: Vec<(String, PyReadonlyArray1<'_, f32>)>,
+    size: [u32; 2],
+    info: &str,
+) -> PyResult<Cow<'static, [u8]>> {
+    let copies = channels.into_iter().map(|(name, values)| Ok((name, values.as_slice()?.to_vec())));
+    let copies = copies.collect::<PyResult<Vec<_>>>()?;
+    detached(py, || image_file::exr_bytes(copies, size, info)).map(Cow::Owned)
 }

@@ -14,6 +14,7 @@ mod image;
 mod light;
 mod light_points;
 mod scene;
+mod scene_file;
 mod shipped;
 mod technique;
 mod visibility;
@@ -29,13 +30,15 @@ mod _core {
     #[pymodule_export]
     use super::context::{Context, adapters};
     #[pymodule_export]
-    use super::image::{png_grey16, png_srgb8};
+    use super::image::{exr, png_grey16, png_srgb8};
     #[pymodule_export]
     use super::light::Light;
     #[pymodule_export]
     use super::light_points::light_points;
     #[pymodule_export]
     use super::scene::{Scene, default_material};
+    #[pymodule_export]
+    use super::scene_file::load_scene_file;
     #[pymodule_export]
     use super::shipped::{shipped_names, shipped_scene};
     #[pymodule_export]

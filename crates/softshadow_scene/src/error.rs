@@ -15,7 +15,7 @@ pub enum SceneError {
         reason: String,
     },
     /// The extension is none that can be read.
-    #[error("{path}: unknown format '{extension}'; readable are .glb, .gltf and .obj", path = path.display())]
+    #[error("{path}: unknown format '{extension}'; readable are .glb, .gltf, .obj, .ply, .stl and .json", path = path.display())]
     UnknownFormat {
         /// The path as given.
         path: PathBuf,

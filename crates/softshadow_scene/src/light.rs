@@ -175,6 +175,12 @@ impl Light {
         &self.shape
     }
 
+    /// The light's pose, row-major.
+    #[must_use]
+    pub fn world_from_light(&self) -> [[f64; 4]; 4] {
+        self.world_from_light
+    }
+
     /// Linear radiance, red, green, blue.
     #[must_use]
     pub fn radiance(&self) -> [f32; 3] {

@@ -346,7 +346,7 @@ fn extensions_in_any_case_are_known_and_others_refused() {
     let path = folder.join("A.GLB");
     fs::write(&path, glb_with(&TRIANGLE, &[0, 1, 2], &[])).unwrap();
     assert!(load(&path).is_ok());
-    for (name, expected) in [("a.stl", "stl"), ("a", ""), ("a.GLB.Zip", "zip")] {
+    for (name, expected) in [("a.fbx", "fbx"), ("a", ""), ("a.GLB.Zip", "zip")] {
         let error = load(&folder.join(name)).unwrap_err();
         assert!(matches!(&error, SceneError::UnknownFormat { extension, .. } if extension == expected), "{error}");
     }
@@ -439,7 +439,28 @@ fn obj_vertices_that_are_missing_or_not_finite_are_named() {
 fn random_changes_never_panic() {
     let node = (r#"{"mesh":0}"#, r#"{"mesh":0,"rotation":[0,0,0.6,0.8],"translation":[1,2,3],"children":[]}"#);
     let obj = "o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1/1 2//2 3/3/3\nf -1 -2 -3 1\ng b\nf 4 3 2\n";
-    let files = [("glb", glb_with(&TRIANGLE, &[0, 1, 2], &[node])), ("obj", obj.as_bytes().to_vec())];
+    // Most of the header is comment, so that many changes leave a file that can be read.
+    let comment = "made by hand ".repeat(40);
+    let ply = format!(
+        "ply\ncomment {comment}\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n\
+        property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n"
+    );
+    let stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+    // Blocks of a header that no reader looks at, for the same reason.
+    let binary_stl = [&[b'x'; 80][..], &2_u32.to_le_bytes(), &[0x3e; 100]].concat();
+    let (header, _) = ply.split_once("0 0 0\n").unwrap();
+    let header = header.replace("ascii", "binary_big_endian");
+    let corners: Vec<u8> = (0..12).flat_map(|i: u8| f32::from(i).to_be_bytes()).collect();
+    let faces = [[3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2], [3, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 3]].concat();
+    let binary_ply = [header.as_bytes(), &corners, &faces].concat();
+    let files = [
+        ("glb", glb_with(&TRIANGLE, &[0, 1, 2], &[node])),
+        ("obj", obj.as_bytes().to_vec()),
+        ("ply", ply.into_bytes()),
+        ("ply", binary_ply),
+        ("stl", stl.as_bytes().to_vec()),
+        ("stl", binary_stl),
+    ];
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
     let mut random = |below: usize| {
         // Xorshift: Marsaglia 2003.
