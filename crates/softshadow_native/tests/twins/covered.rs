@@ -85,7 +85,7 @@ fn triangles_that_touch_a_ball_of_light() {
     let at = look_at([0.1, 2.6, 0.1], [0.0; 3], Some([0.0, 0.0, -1.0])).unwrap();
     let ball = || Light::new(LightShape::Sphere { radius: 0.3 }, at).unwrap();
     for samples in [7, 64, 100] {
-        let call = call(triangles(samples), &scene, ball(), shipped("canopy", [40, 32]).2);
+        let call = Call::new(triangles(samples), &scene, vec![ball()], shipped("canopy", [40, 32]).2);
         let local = &call.scene.local;
         assert!(OccluderContents::new(local, boundary_of(local, &ball())).unwrap().touching.is_some());
         call.compare(same);
@@ -97,7 +97,7 @@ fn several_blocks_and_passes() {
     let (scene, light, camera) = shipped("cards", [60, 40]);
     let Technique::DepthComplexity(settings) = triangles(64) else { unreachable!() };
     let technique = Technique::DepthComplexity(DepthComplexity { passes: 2, ..settings });
-    Call { block: 700, ..call(technique, &scene, light, camera) }.compare(same);
+    Call { block: 700, ..Call::new(technique, &scene, vec![light], camera) }.compare(same);
 }
 
 #[test]

@@ -56,6 +56,8 @@ pub(crate) struct Call {
     pub(crate) until: Option<&'static str>,
     /// Labels of passes before it that both engines leave out.
     pub(crate) without: &'static [&'static str],
+    /// A buffer that gets so many bytes instead of its own.
+    pub(crate) room: Option<(&'static str, u64)>,
 }
 
 /// Where receivers come from.
@@ -92,7 +94,7 @@ impl Call {
     pub(crate) fn new(technique: Technique, scene: &Scene, lights: Vec<Light>, receivers: Source) -> Self {
         let scene = SceneContents::new(LocalScene::new(scene, None, host().limits.storage_binding_bytes));
         let wants = Wants::default();
-        Self { technique, scene, lights, receivers, wants, block: 1 << 20, until: None, without: &[] }
+        Self { technique, scene, lights, receivers, wants, block: 1 << 20, until: None, without: &[], room: None }
     }
 
     /// Cuts the scene into parts of so many bytes.
@@ -192,7 +194,7 @@ impl Call {
         program.check().unwrap();
         let contents = self.scene.contents().chain(occluders.iter().flat_map(|o| o.contents()));
         let contents: BTreeMap<ContentKey, Content> = contents.map(|c| (c.key, c.clone())).collect();
-        run(&Part { program: &program, until: self.until, without: self.without }, &contents)
+        run(&Part { program: &program, until: self.until, without: self.without, room: self.room }, &contents)
     }
 }
 
@@ -226,6 +228,7 @@ struct Part<'a> {
     program: &'a dyn Program,
     until: Option<&'static str>,
     without: &'static [&'static str],
+    room: Option<(&'static str, u64)>,
 }
 
 impl Program for Part<'_> {
@@ -238,6 +241,10 @@ impl Program for Part<'_> {
             stage.plan.decision = None;
         }
         passes.retain(|pass| !self.without.contains(&pass.label.as_str()));
+        if let Some((label, bytes)) = self.room {
+            let id = stage.plan.find(label).expect("a buffer of this label");
+            stage.plan.resources[id.index()].shape = Shape::Buffer { bytes };
+        }
         Step::Run(stage)
     }
 }

@@ -191,9 +191,10 @@ fn full_lists_are_reported() {
         assert!(buffers["running counts"][3] > 0, "lists have room for all");
         Vec::new()
     }
-    // Of foliage every edge of every leaf is a silhouette.
-    let (scene, light, camera) = shipped("canopy", [32, 24]);
-    before_fold(Call::new(accurate(), &scene, vec![light], camera)).compare(|label| match label {
+    let (scene, light, camera) = shipped("toruses", [64, 48]);
+    let mut call = before_fold(Call::new(accurate(), &scene, vec![light], camera));
+    call.room = Some(("edge lists", 48 * 2 * 40 + 100 * 128));
+    call.compare(|label| match label {
         "running counts" => Same::Said(full),
         _ => Same::Apart("whose list is cut depends on who came first"),
     });
