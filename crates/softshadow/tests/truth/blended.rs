@@ -5,7 +5,7 @@ use softshadow::{
     LightTexture, Options, Receivers, Scene, Technique, Visibility, adapters, visibility,
 };
 
-use crate::common::{Random, bits, context, lamp, points, rectangle, see, shipped};
+use crate::common::{Random, bits, context, lamp, on_driver, points, rectangle, see, shipped};
 use crate::depth_complexity::{bodies, lights};
 use crate::shapes::{Triangle, plate, scene, sphere, torus};
 
@@ -49,6 +49,7 @@ fn floor(z: f64) -> Vec<Triangle> {
 
 #[test]
 fn shipped_scenes_have_the_bits_of_tiles() {
+    let _driver = on_driver();
     for name in ["fork", "cards", "toruses", "hall"] {
         let (scene, light, camera) = shipped(name, [160, 120]);
         for counters in [Counters::Words, Counters::Float] {
@@ -78,6 +79,7 @@ fn every_light_base_and_count_of_samples_has_the_bits_of_tiles() {
 
 #[test]
 fn cameras_stand_in_wedges_and_before_casters() {
+    let _driver = on_driver();
     // Between casters and floor, in umbra and penumbra, looking anywhere: wedges are entered, cross the near plane, and begin behind the
     // eye; walls stand behind receivers, and casters where the camera does not look.
     let walls = [floor(-0.7), plate([-3.0, 3.0], [-3.0, 3.0], 4.0)].concat();
@@ -98,6 +100,7 @@ fn cameras_stand_in_wedges_and_before_casters() {
 
 #[test]
 fn lights_within_the_scene_have_wedges_over_the_whole_image() {
+    let _driver = on_driver();
     let room = scene(&[torus(0.6, 0.3, 24, 12), sphere([0.0, 0.0, 0.1], 0.3, 2), floor(-0.8)].concat());
     let camera = Camera::look_at([1.2, -1.9, 0.4], [0.0, 0.0, -0.5], None, 60.0, [64, 48]).unwrap();
     for shape in [rectangle(1.0, 1.0), LightShape::Disc { radius: 0.4 }] {
@@ -143,6 +146,7 @@ fn any_number_of_layers_is_counted() {
 
 #[test]
 fn blocks_textures_and_passes_change_no_bit() {
+    let _driver = on_driver();
     let (scene, light, camera) = shipped("toruses", [96, 72]);
     let receivers = Receivers::Camera(camera);
     for counters in [Counters::Words, Counters::Float] {
@@ -279,6 +283,7 @@ fn shadow_volumes_count_nearly_what_rays_count() {
 
 #[test]
 fn receivers_beside_their_pixels_are_told() {
+    let _driver = on_driver();
     // A camera nearly in the plane of a plate: it covers less than a row of pixels, and rounding of its corners decides which. A receiver
     // that wedges might miss is refused; what is answered has the bits of tiles.
     let light = lamp(rectangle(1.0, 0.6), [0.3, 0.2, 3.0]);

@@ -1,5 +1,6 @@
 //! One open device for all tests, and one way to ask it.
 
+use std::cell::Cell;
 use std::sync::OnceLock;
 
 use softshadow::{
@@ -9,10 +10,33 @@ use softshadow::{
 
 use crate::shapes::Point;
 
+thread_local! {
+    static ON_DRIVER: Cell<bool> = const { Cell::new(false) };
+}
+
+/// While it lives, this test runs on a software driver, whatever other tests run on.
+pub(crate) struct OnDriver;
+
+/// For what concerns drivers alone: receivers that are drawn, limits of bindings and of loops.
+#[must_use]
+pub(crate) fn on_driver() -> OnDriver {
+    ON_DRIVER.set(true);
+    OnDriver
+}
+
+impl Drop for OnDriver {
+    fn drop(&mut self) {
+        ON_DRIVER.set(false);
+    }
+}
+
 /// The device of all tests that do not break theirs.
 pub(crate) fn context() -> &'static Context {
     static CONTEXT: OnceLock<Context> = OnceLock::new();
-    CONTEXT.get_or_init(|| Context::new(&DeviceChoice::Auto).unwrap())
+    static DRIVER: OnceLock<Context> = OnceLock::new();
+    let (kept, choice) =
+        if ON_DRIVER.get() { (&DRIVER, DeviceChoice::Software) } else { (&CONTEXT, DeviceChoice::Auto) };
+    kept.get_or_init(|| Context::new(&choice).unwrap())
 }
 
 /// Visibility with nothing left out: standard errors, receivers and masks.

@@ -5,7 +5,7 @@ use softshadow::{
     Technique, Visibility, look_at, measure, visibility,
 };
 
-use crate::common::{Random, context, lamp, points, ray_traced, rectangle, see, shipped, surface_points};
+use crate::common::{Random, context, lamp, on_driver, points, ray_traced, rectangle, see, shipped, surface_points};
 use crate::shapes::{Point, Triangle, plate, quad, scene, sphere, torus};
 
 fn folded(samples: u32) -> DepthComplexity {
@@ -166,6 +166,7 @@ fn receivers_around_a_ball_of_light() {
 
 #[test]
 fn folds_that_a_driver_cuts_short_are_told() {
+    let _driver = on_driver();
     // Points side by side, each with triangles of its own right before it: one list for all. It either fits, with the bits of rays, or
     // it is refused; never anything between.
     let mut random = Random(10);

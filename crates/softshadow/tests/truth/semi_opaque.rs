@@ -5,7 +5,9 @@ use softshadow::{
     PictureOptions, SampleSpread, Scene, Shading, Technique, look_at, render, visibility,
 };
 
-use crate::common::{Random, bits, context, hard_shadow_map, lamp, points, ray_traced, rays, rectangle, see};
+use crate::common::{
+    Random, bits, context, hard_shadow_map, lamp, on_driver, points, ray_traced, rays, rectangle, see,
+};
 use crate::shapes::{Point, Triangle, cuboid, plate, scene, sphere, torus};
 
 /// What a unit of attenuation, rounded, can cost of what passes one layer; and what float32 does besides.
@@ -360,6 +362,7 @@ fn invisible_triangles_are_not_there() {
 
 #[test]
 fn a_depth_map_says_that_it_takes_glass_for_opaque() {
+    let _driver = on_driver();
     let light = [lamp(rectangle(0.5, 0.5), [0.0, 0.0, 3.0])];
     let under = points(vec![[0.0, 0.0, 0.0]]);
     let glass = Material { opacity: 0.5, ..Material::default() };

@@ -2,7 +2,7 @@
 
 use softshadow::{Material, Mesh, Scene};
 
-use crate::common::{bits, hard_shadow_map, lamp, ray_traced, rectangle, see, surface_points};
+use crate::common::{bits, hard_shadow_map, lamp, on_driver, ray_traced, rectangle, see, surface_points};
 use crate::shapes::Point;
 
 /// A square plate of `2·columns·rows` triangles at height z.
@@ -36,6 +36,7 @@ const RIGHT: [[f64; 2]; 2] = [[0.35, -0.2], [0.8, 0.5]];
 
 #[test]
 fn a_scene_over_the_binding_limit_casts_the_same_shadow() {
+    let _driver = on_driver();
     let positions: Vec<Point> =
         (0..2000).map(|i| [f64::from(i % 50) / 25.0 - 0.98, f64::from(i / 50) / 20.0 - 0.975, 0.0]).collect();
     let receivers = surface_points(positions, [0.0, 0.0, 1.0]);
@@ -58,6 +59,7 @@ fn a_scene_over_the_binding_limit_casts_the_same_shadow() {
 
 #[test]
 fn what_passes_is_multiplied_over_sub_scenes() {
+    let _driver = on_driver();
     let positions: Vec<Point> = (0..500).map(|i| [f64::from(i) / 250.0 - 0.999, 0.1, 0.0]).collect();
     let receivers = surface_points(positions, [0.0, 0.0, 1.0]);
     let lights = [lamp(rectangle(0.6, 0.6), [0.0, 0.0, 2.0])];
