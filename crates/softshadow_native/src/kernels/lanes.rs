@@ -92,6 +92,17 @@ impl<S: Simd> Vec3x8<S> {
     }
 
     #[inline(always)]
+    pub(crate) fn over(self, by: f32x8<S>) -> Self {
+        Self { x: self.x / by, y: self.y / by, z: self.z / by }
+    }
+
+    /// The largest of the components' sizes.
+    #[inline(always)]
+    pub(crate) fn largest_component(self) -> f32x8<S> {
+        self.x.abs().max(self.y.abs().max(self.z.abs()))
+    }
+
+    #[inline(always)]
     pub(crate) fn min(self, other: Self) -> Self {
         Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
     }

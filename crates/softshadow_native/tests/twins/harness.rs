@@ -351,7 +351,10 @@ pub(crate) fn differing(theirs: &Buffers, ours: &Buffers, same: &impl Fn(&str) -
             a.to_bits() == b.to_bits() || (a - b).abs() <= within || (a.is_nan() && b.is_nan())
         };
         match same(label) {
-            Same::Apart(_) => None,
+            Same::Apart(reason) => {
+                assert!(!reason.is_empty(), "what is not compared has a reason");
+                None
+            }
             Same::Bits => first_of(label, theirs, ours, |a, b| a == b),
             Same::Within(most) => first_of(label, theirs, ours, |a, b| close(most, a, b)),
             Same::Sorted(rows) => first_row(label, [rows(theirs), rows(ours)]),

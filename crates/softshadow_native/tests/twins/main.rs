@@ -1,5 +1,6 @@
 //! Twins against their WGSL: the same programs on Mesa's software driver and natively, compared buffer by buffer.
 
+mod complete;
 mod covered;
 mod fold;
 mod harness;

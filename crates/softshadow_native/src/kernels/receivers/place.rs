@@ -1,12 +1,11 @@
 //! The twin of `receivers/place.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
+use fearless_simd::{Simd, f32x8, prelude::*};
 use glam::Vec3;
 
-use crate::kernels::shared::receiver::{
-    NO_TRIANGLE, RECEIVER_NONE, RECEIVER_POINT, RECEIVER_SURFACE, Receiver, receiver_lift,
-};
-use crate::kernels::shared::triangle::triple;
+use crate::kernels::lanes::{LANES, Vec3x8};
+use crate::kernels::shared::receiver::{LIFT, NO_TRIANGLE, RECEIVER_NONE, RECEIVER_POINT, RECEIVER_SURFACE, Receiver};
 
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -39,20 +38,40 @@ impl CameraRays {
         self.corner + self.step_x * x + self.step_y * y
     }
 
-    /// Where the ray along `d` meets a triangle.
-    pub(super) fn receiver_on(&self, d: Vec3, [v0, v1, v2]: [Vec3; 3], triangle: u32) -> Receiver {
-        let [a, b, c] = [v0, v1, v2].map(|v| v - self.eye);
-        let weights = Vec3::new(triple(d, b, c), -triple(d, a, c), triple(d, a, b));
-        let facing = if weights.x + weights.y + weights.z >= 0.0 { 1.0 } else { -1.0 };
-        let weights = (weights * facing).max(Vec3::ZERO);
-        let sum = weights.x + weights.y + weights.z;
-        let weights = if sum > 0.0 { weights / sum } else { Vec3::splat(1.0 / 3.0) };
-        let position = v0 * weights.x + v1 * weights.y + v2 * weights.z;
-        let scale = (v1 - v0).abs().max_element().max((v2 - v0).abs().max_element());
-        let raw = ((v1 - v0) / scale).cross((v2 - v0) / scale);
-        let toward_camera = raw * if raw.dot(a) < 0.0 { 1.0 } else { -1.0 };
-        let normal = toward_camera / toward_camera.length().max(1e-30);
-        let kind = if toward_camera.dot(toward_camera) > 0.0 { RECEIVER_SURFACE } else { RECEIVER_POINT };
-        Receiver { position: receiver_lift(position, normal, self.scene_extent), triangle, normal, kind }
+    /// Where eight rays along `d` meet a triangle each.
+    #[inline(always)]
+    pub(super) fn receivers_on<S: Simd>(
+        &self,
+        simd: S,
+        d: Vec3x8<S>,
+        [v0, v1, v2]: [Vec3x8<S>; 3],
+        triangles: [u32; LANES],
+    ) -> [Receiver; LANES] {
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let eye = Vec3x8::splat(simd, self.eye);
+        let (a, b, c) = (v0 - eye, v1 - eye, v2 - eye);
+        let [mut u, mut v, mut w] = [d.dot(b.cross(c)), -d.dot(a.cross(c)), d.dot(a.cross(b))];
+        let facing = (u + v + w).simd_ge(zero).select(one, -one);
+        [u, v, w] = [(u * facing).max(zero), (v * facing).max(zero), (w * facing).max(zero)];
+        let sum = u + v + w;
+        let has_sum = sum.simd_gt(zero);
+        let third = f32x8::splat(simd, 1.0 / 3.0);
+        [u, v, w] = [has_sum.select(u / sum, third), has_sum.select(v / sum, third), has_sum.select(w / sum, third)];
+        let position = v0.scale(u) + v1.scale(v) + v2.scale(w);
+        let (side1, side2) = (v1 - v0, v2 - v0);
+        let scale = side1.largest_component().max(side2.largest_component());
+        let raw = side1.over(scale).cross(side2.over(scale));
+        let toward_camera = raw.scale(raw.dot(a).simd_lt(zero).select(one, -one));
+        let squared = toward_camera.dot(toward_camera);
+        let normal = toward_camera.over(squared.sqrt().max(f32x8::splat(simd, 1e-30)));
+        let lift = (position.largest_component() + self.scene_extent) * LIFT;
+        let lifted = position + normal.scale(lift);
+        let has_normal = squared.simd_gt(zero).to_bitmask();
+        let mut receivers = [NOTHING; LANES];
+        for (k, receiver) in receivers.iter_mut().enumerate() {
+            let kind = if has_normal >> k & 1 == 1 { RECEIVER_SURFACE } else { RECEIVER_POINT };
+            *receiver = Receiver { position: lifted.lane(k), triangle: triangles[k], normal: normal.lane(k), kind };
+        }
+        receivers
     }
 }

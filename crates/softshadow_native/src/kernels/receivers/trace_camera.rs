@@ -47,15 +47,23 @@ fn trace_run<S: Simd>(simd: S, scene: &Scene<'_>, first: u32, receivers: &mut [R
         let last = receivers.len() - 1;
         let ways: [Vec3; LANES] = std::array::from_fn(|k| scene.rays.way_of(first + k.min(last) as u32));
         let start = std::array::from_fn(|k| distances[k.min(last)]);
-        let (nearest, found) = trace_eight(simd, scene, &ways, start);
-        for (k, (receiver, distance)) in receivers.iter_mut().zip(distances).enumerate() {
-            *distance = nearest[k];
-            if found[k] != NO_TRIANGLE {
-                let corner = |i: usize| scene.corners[3 * found[k] as usize + i].position;
-                let triangle = scene.sub_scene.first_triangle + found[k];
-                *receiver = scene.rays.receiver_on(ways[k], [corner(0), corner(1), corner(2)], triangle);
+        let d = Vec3x8::from_fn(simd, |k| ways[k]);
+        let (nearest, found) = trace_eight(simd, scene, &ways, d, start);
+        let finds = found.map(|found| found != NO_TRIANGLE);
+        if finds.contains(&true) {
+            // Who finds nothing takes any triangle, and is left alone.
+            let at = found.map(|found| if found == NO_TRIANGLE { 0 } else { 3 * found as usize });
+            let corners = [0, 1, 2].map(
+                #[inline(always)]
+                |i| Vec3x8::from_fn(simd, |k| scene.corners[at[k] + i].position),
+            );
+            let triangles = found.map(|found| scene.sub_scene.first_triangle.wrapping_add(found));
+            let placed = scene.rays.receivers_on(simd, d, corners, triangles);
+            for (k, receiver) in receivers.iter_mut().enumerate().filter(|(k, _)| finds[*k]) {
+                *receiver = placed[k];
             }
         }
+        distances.copy_from_slice(&nearest[..distances.len()]);
     }
 }
 
@@ -65,10 +73,10 @@ fn trace_eight<S: Simd>(
     simd: S,
     scene: &Scene<'_>,
     ways: &[Vec3; LANES],
+    d: Vec3x8<S>,
     start: [f32; LANES],
 ) -> ([f32; LANES], [u32; LANES]) {
     let eye = scene.rays.eye;
-    let d = Vec3x8::from_fn(simd, |k| ways[k]);
     let inverse = Vec3x8::from_fn(simd, |k| safe_reciprocal(ways[k]));
     let pad = Vec3::splat(box_pad(eye));
     let to_low = Vec3x8::splat(simd, -eye - pad) * inverse;

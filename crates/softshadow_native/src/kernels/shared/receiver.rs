@@ -23,8 +23,9 @@ pub(crate) struct Receiver {
     pub(crate) kind: u32,
 }
 
-/// Moves a point off its own surface by what rounding can have cost: 14 u (|p| + largest |vertex|), u = 2⁻²⁴.
+/// Points are moved off their own surface by what rounding can have cost: 14 u (|p| + largest |vertex|), u = 2⁻²⁴.
+pub(crate) const LIFT: f32 = 14.0 * 5.960_464_5e-8;
+
 pub(crate) fn receiver_lift(position: Vec3, normal: Vec3, scene_extent: f32) -> Vec3 {
-    let distance = 14.0 * 5.960_464_5e-8 * (position.abs().max_element() + scene_extent);
-    position + normal * distance
+    position + normal * (LIFT * (position.abs().max_element() + scene_extent))
 }

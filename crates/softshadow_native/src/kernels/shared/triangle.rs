@@ -14,10 +14,6 @@ pub(crate) struct Corner {
     pub(crate) triangle: u32,
 }
 
-pub(crate) fn triple(x: Vec3, y: Vec3, z: Vec3) -> f32 {
-    x.dot(y.cross(z))
-}
-
 /// Whether the segments from `p` along each `d` cross the triangle strictly between their ends; with `unbounded` they have no far end.
 #[inline(always)]
 pub(crate) fn triangle_blocks<S: Simd>(
