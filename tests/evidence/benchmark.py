@@ -22,7 +22,7 @@ def measured(*arguments: str) -> list[Line]:
     with tempfile.TemporaryDirectory() as folder:
         json_lines = Path(folder, "lines.json")
         command = ["cargo", "run", "--release", "--quiet", "--package", "softshadow_bench", "--"]
-        command += ["--device", "software", "--json", str(json_lines), *arguments]
+        command += ["--json", str(json_lines), *arguments]
         subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
         return [json.loads(line) for line in json_lines.read_text().splitlines()]
 
@@ -40,7 +40,7 @@ def complete(lines: list[Line]) -> bool:
 def ratios(scenes: list[str], rounds: int) -> tuple[list[str], bool]:
     """Published ratios beside ours."""
     arguments = ["--ratios", "published", "--repeats", str(rounds), "--reference", REFERENCE]
-    lines = measured(*repeated("--scene", scenes), *arguments)
+    lines = measured("--device", "native", *repeated("--scene", scenes), *arguments)
     table = [
         "Times of two settings of `depth_complexity` over each other, turn by turn in one run, 512 × 512. Published "
         "are those of Forest, Barthe and Paulin (2008): whole pictures of 1024 × 1024 on a Geforce 8800 GTX. The two "
@@ -63,19 +63,20 @@ def ratios(scenes: list[str], rounds: int) -> tuple[list[str], bool]:
     return [*table, ""], complete(lines)
 
 
-def passes(scene: str, cases: list[str], rounds: int) -> tuple[list[str], bool]:
-    """Milliseconds of every pass, and what they explain of the wall time."""
-    arguments = ["--repeats", str(rounds), "--reference", REFERENCE]
-    lines = measured("--scene", scene, *repeated("--technique", cases), *arguments)
+def passes(scene: str, cases: list[str], rounds: int, devices: tuple[str, ...]) -> tuple[list[str], bool]:
+    """Milliseconds of every pass by device, and what they explain of the wall time."""
+    arguments = ["--scene", scene, *repeated("--technique", cases), "--repeats", str(rounds), "--reference", REFERENCE]
+    lines = [{**line, "device": device} for device in devices for line in measured("--device", device, *arguments)]
     rows = [line for line in lines if line["kind"] == "measurement"]
     times = [{one["label"]: one["ms"] for one in row["pass_ms"]} for row in rows]
     labels = list(dict.fromkeys(label for column in times for label in column))
     table = [
         f"**{scene}**, 512 × 512, milliseconds and per cent of the wall time, from runs in which every pass is a "
-        "submission of its own; the wall time of runs with one submission stands last. Passes that stay below "
+        "submission of its own; the wall time of runs with one submission stands last. The same kernels natively and "
+        "by a software driver on the same processors: what the driver costs. Passes that stay below "
         f"{SMALL:.0%} are added up.",
         "",
-        f"| pass | {' | '.join(row['case'] for row in rows)} |",
+        f"| pass | {' | '.join(f'{row['case']}, {row['device']}' for row in rows)} |",
         "|---" * (len(rows) + 1) + "|",
     ]
 
@@ -103,7 +104,7 @@ def passes(scene: str, cases: list[str], rounds: int) -> tuple[list[str], bool]:
 def waving(scenes: list[str], cases: list[str], frames: int) -> tuple[list[str], bool]:
     """Refits against scenes made anew, and shadows of the frames."""
     arguments = ["--waving", str(frames), "--repeats", "1", "--reference", REFERENCE]
-    lines = measured(*repeated("--scene", scenes), *repeated("--technique", cases), *arguments)
+    lines = measured("--device", "native", *repeated("--scene", scenes), *repeated("--technique", cases), *arguments)
     columns = "scene|triangles|case|refit ms|build ms|refit : build|shadows ms|refit : shadows|made anew|differing"
     table = [
         f"Scenes that sway (`procedural::waving`), {frames} frames of one period, 512 × 512. *Refit*: what the library "

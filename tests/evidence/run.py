@@ -32,23 +32,28 @@ PASSES = [f"depth_complexity:samples={samples}" for samples in (64, 256)]
 MOVING = ["ray_traced:samples=64", "depth_complexity:samples=64"]
 SAMPLES = (16, 64, 256)
 RAYS = [ss.RayTraced(samples=samples) for samples in SAMPLES]
-PROBED = [ss.RayTraced(samples=samples, probes=16) for samples in SAMPLES[1:]]
 EDGES = [ss.DepthComplexity(samples=samples) for samples in SAMPLES]
-BLENDED = [ss.DepthComplexity(samples=samples, evaluation="blended") for samples in SAMPLES]
-MEASURED: list[tuple[str, int, list[ss.Technique]]] = [
-    ("bunny", 512, [*RAYS, *PROBED, *EDGES, *BLENDED]),
-    ("toruses", 512, [RAYS[1], *EDGES, BLENDED[1]]),
-    ("canopy", 512, [RAYS[1], *EDGES[:2]]),
-    # Blended is left out here: where a processor draws, an image of a quarter of the size takes half a minute already.
-    ("bunny", 1024, EDGES),
-    ("toruses", 1024, EDGES),
+BLENDED = ss.DepthComplexity(samples=64, evaluation="blended")
+NATIVE: list[ss.Technique] = [
+    *RAYS,
+    ss.RayTraced(samples=256, probes=16),
+    *(ss.DepthComplexity(samples=samples) for samples in (16, 32, 64, 144, 256)),
+    ss.DepthComplexity(samples=200, passes=2),
 ]
-"""One model on a ground; several bodies, standing, lying and tilted, over a floor; foliage."""
+MEASURED: list[tuple[str, int, str, list[ss.Technique]]] = [
+    ("bunny", 512, "native", NATIVE),
+    ("teapots", 512, "native", NATIVE),
+    ("canopy", 512, "native", [*RAYS, *EDGES]),
+    ("bunny", 1024, "native", NATIVE),
+    ("teapots", 1024, "native", NATIVE),
+    ("bunny", 512, "software", [RAYS[1], *EDGES, BLENDED]),
+    ("toruses", 512, "software", [RAYS[1], *EDGES]),
+]
+"""One model on a ground; two teapots and a cow; foliage; several bodies, standing, lying and tilted, over a floor."""
 BESIDE = (
     "Everything gets the same receivers and light samples. Of ours the time from the camera to visibility counts, "
     "receivers included, of the others the query alone. Probes: 16 samples first, all samples only where those of a "
-    "receiver and of its neighbours disagree (ours within a pixel, the kernel's within four). Blended draws penumbra "
-    "wedges, which a processor fills slowly: it is left out of the larger images."
+    "receiver and of its neighbours disagree (ours within a pixel, the kernel's within four)."
 )
 MARK = "<!-- speed against error -->"
 
@@ -61,25 +66,30 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--only", nargs="*", help="titles (or their beginnings) of the sections to make anew")
     chosen = parser.parse_args()
-    adapter = ss.doctor().adapters[0]
+    machine = ss.doctor()
+    adapter = machine.adapters[0]
     introduction = [
         "# Evidence",
         "",
         "Made by `make evidence`. Absolute times hold only for the machine that made them, and not where it had other "
         "work (each section says so); ratios come from one run in which both sides took turns.",
         "",
-        f"Adapter: {adapter['name']}, {adapter['backend']}, {adapter['device_type']}, {adapter['driver']}.",
+        f"Native: {machine.native['name']}, {machine.native['driver']}. Software: {adapter['name']}, {adapter['backend']}, "
+        f"{adapter['driver']}, on the same processors.",
         "",
     ]
     sections: dict[str, Callable[[], tuple[list[str], bool]]] = {
-        "Ray by ray against Embree": ray_by_ray,
+        "Ray by ray against Embree": partial(ray_by_ray, "software"),
+        "Ray by ray against Embree, natively": partial(ray_by_ray, "native"),
         "Silhouette edges against rays": against_rays,
         "Mutants of the silhouette edges": mutants,
         **{
-            f"Time against error: {name}, {size} × {size}": partial(time_against_error, name, size, ours, chosen.rounds)
-            for name, size, ours in MEASURED
+            f"Time against error: {name}, {size} × {size}, {device}": partial(
+                time_against_error, name, size, device, ours, chosen.rounds
+            )
+            for name, size, device, ours in MEASURED
         },
-        "Where the time goes": lambda: benchmark.passes("bunny", PASSES, chosen.rounds),
+        "Where the time goes": lambda: benchmark.passes("bunny", PASSES, chosen.rounds, ("native", "software")),
         "Ratios of the paper": lambda: benchmark.ratios(["bunny", "toruses"], chosen.rounds),
         "A scene that moves": lambda: benchmark.waving(["bunny", "toruses"], MOVING, frames=10),
         "Shipped scenes": lambda: shipped_scenes(chosen.rounds, chosen.readme),
@@ -105,24 +115,26 @@ def sections_of(report: Path) -> dict[str, list[str]]:
     return {title: text.strip("\n").split("\n") + [""] for title, _, text in (part.partition("\n") for part in parts)}
 
 
-def ray_by_ray() -> tuple[list[str], bool]:
+def ray_by_ray(device: str) -> tuple[list[str], bool]:
     """Rays, and silhouette edges in the same place."""
     rays, edges = ss.RayTraced(samples=64), ss.DepthComplexity(samples=64, exact_area=False)
     triangles = ss.DepthComplexity(samples=64, unit="triangles")
     scenes: list[tuple[str, ss.Technique]] = [(name, rays) for name in ("stanford-bunny.obj", "teapot.obj", "canopy")]
     scenes += [(name, edges) for name in ("stanford-bunny.obj", "teapot.obj", "cow.obj", "beetle.obj")]
-    parts = [against_embree(find(name), technique) for name, technique in [*scenes, ("canopy", triangles)]]
+    parts = [against_embree(find(name), technique, device) for name, technique in [*scenes, ("canopy", triangles)]]
     return [line for lines, _ in parts for line in lines], all(ok for _, ok in parts)
 
 
-def time_against_error(name: str, size: int, techniques: list[ss.Technique], rounds: int) -> tuple[list[str], bool]:
+def time_against_error(
+    name: str, size: int, device: str, techniques: list[ss.Technique], rounds: int
+) -> tuple[list[str], bool]:
     """A scene against the clock and beside the others, all of which must be there."""
     tracers, skipped = peers.installed()
     # Its rays do not end at the light, and nobody is slower.
     tracers.pop("trimesh", None)
-    tracers = {name: (kind, [n for n in counts if n in SAMPLES]) for name, (kind, counts) in tracers.items()}
-    reference = ss.RayTraced(samples=256, passes=4, pattern="low_discrepancy", seed=99)
-    found = peers.beside(find(name, size), tracers, techniques, rounds, "software", reference)
+    if device == "software":
+        tracers = {name: (kind, [n for n in counts if n in SAMPLES]) for name, (kind, counts) in tracers.items()}
+    found = peers.beside(find(name, size), tracers, techniques, rounds, device, peers.REFERENCE)
     missing = [*(f"Skipped: {reason}" for reason in skipped), *(f"Refused: {reason}" for reason in found.refused)]
     lines = [f"{BESIDE} Medians of {rounds} turns.", "", *missing, *peers.lines(found), *peers.ratio_lines(found)]
     return lines, not missing
@@ -133,7 +145,7 @@ def shipped_scenes(rounds: int, readme: Path) -> tuple[list[str], bool]:
     table = shipped_table(rounds)
     hall = ss.scenes.load("hall")
     fine = ss.RayTraced(samples=256, pattern="low_discrepancy")
-    ss.render(hall.scene, hall.light, camera=hall.camera, technique=fine, exposure=0.5, device="software").save(
+    ss.render(hall.scene, hall.light, camera=hall.camera, technique=fine, exposure=0.5).save(
         Path(__file__).with_name("hall.png")
     )
     if readme.is_file():
@@ -143,7 +155,7 @@ def shipped_scenes(rounds: int, readme: Path) -> tuple[list[str], bool]:
     return [*table, ""], True
 
 
-def against_embree(model: Measured, technique: ss.Technique) -> tuple[list[str], bool]:
+def against_embree(model: Measured, technique: ss.Technique, device: str) -> tuple[list[str], bool]:
     """Both on all pixels that see a surface, 64 samples each."""
     result = ss.visibility(
         model.scene,
@@ -152,7 +164,7 @@ def against_embree(model: Measured, technique: ss.Technique) -> tuple[list[str],
         technique=technique,
         receivers=True,
         sample_masks=True,
-        device="software",
+        device=device,
     )
     seen = result.valid
     origins, normals = model.stored(result.positions[seen]), result.normals[seen]
@@ -211,7 +223,6 @@ def shipped_table(rounds: int) -> list[str]:
             techniques=techniques,
             reference=ss.RayTraced(samples=256, passes=8, pattern="low_discrepancy", seed=7),
             repeats=rounds,
-            device="software",
         )
         for row in table.rows:
             settings = row["technique"]

@@ -60,7 +60,7 @@ def test_published_ratios_stand_beside_ours(recorded):
 def test_passes_add_up_to_a_share_of_the_wall_time(recorded):
     benchmark, answer = recorded
     answer(PASSES)
-    lines, complete = benchmark.passes("bunny", ["depth_complexity:samples=64"], 1)
+    lines, complete = benchmark.passes("bunny", ["depth_complexity:samples=64"], 1, ("native",))
     assert complete
     assert lines[-6:-1] == [
         "| fold | 90.0 (90.0%) |",
