@@ -76,7 +76,7 @@ def passes(scene: str, cases: list[str], rounds: int, devices: tuple[str, ...]) 
         "by a software driver on the same processors: what the driver costs. Passes that stay below "
         f"{SMALL:.0%} are added up.",
         "",
-        f"| pass | {' | '.join(f'{row['case']}, {row['device']}' for row in rows)} |",
+        f"| pass | {' | '.join(', '.join([row['case'], row['device']]) for row in rows)} |",
         "|---" * (len(rows) + 1) + "|",
     ]
 

@@ -74,8 +74,8 @@ def main() -> int:
         "Made by `make evidence`. Absolute times hold only for the machine that made them, and not where it had other "
         "work (each section says so); ratios come from one run in which both sides took turns.",
         "",
-        f"Native: {machine.native['name']}, {machine.native['driver']}. Software: {adapter['name']}, {adapter['backend']}, "
-        f"{adapter['driver']}, on the same processors.",
+        f"Native: {machine.native['name']}, {machine.native['driver']}. Software, on the same processors: "
+        f"{adapter['name']}, {adapter['backend']}, {adapter['driver']}.",
         "",
     ]
     sections: dict[str, Callable[[], tuple[list[str], bool]]] = {
