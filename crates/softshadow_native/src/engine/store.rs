@@ -91,10 +91,9 @@ impl Store {
     }
 }
 
-/// So many zeros, or nothing where there is no memory for them.
+/// So many zeros, or nothing where there is no memory for them. The system hands out zeroed pages as they are touched: lists that stay empty
+/// cost nothing, where filling them would take longer than many a pass.
 fn zeros(length: usize) -> Option<Vec<u32>> {
-    let mut words = Vec::new();
-    words.try_reserve_exact(length).ok()?;
-    words.resize(length, 0);
-    Some(words)
+    Vec::<u32>::new().try_reserve_exact(length).ok()?;
+    Some(vec![0; length])
 }
