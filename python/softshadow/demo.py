@@ -17,8 +17,7 @@ import numpy as np
 from . import scenes
 from .camera import Camera, look_at
 from .comparison import compare
-from .device import quiet_driver
-from .diagnosis import doctor
+from .device import context, quiet_driver
 from .lights import Light, RectLight
 from .picture import render
 from .scene import Mesh, Scene
@@ -103,8 +102,8 @@ def _show(name: str, scene: Scene, light: Light, camera: Camera, folder: Path, d
 
 
 def _beside(device: str) -> list[Technique]:
-    """What else is shown: a hard shadow map where something can draw it."""
-    draws = device != "native" and doctor().adapters
+    """What else is shown: a hard shadow map where the device can draw it."""
+    draws = json.loads(context(device).adapter)["device_type"] != "native"
     return [technique for technique in _BESIDE if draws or not isinstance(technique, HardShadowMap)]
 
 

@@ -110,9 +110,9 @@ class DepthComplexity(Technique):
     """Silhouette edges and counters (Forest, Barthe and Paulin 2008): as accurate as rays to the same samples.
 
     Where a single layer hides the light, its visible area answers exactly, without sampling noise; not for spheres,
-    suns wider than half a degree, polygons of more than 64 corners, nor in a call with a textured light. Foliage is
-    folded triangle by triangle: the same samples, and no areas. A scene in which too much lies before one receiver
-    raises an error that says so.
+    suns wider than half a degree, polygons of more than 64 corners, receivers whose horizon cuts the light, nor in a
+    call with a textured light. Foliage is folded triangle by triangle: the same samples, and no areas. A scene in which
+    too much lies before one receiver raises an error that says so.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ class DepthComplexity(Technique):
         say so. Not over triangles.
     silhouettes : {"accurate", "standard"}
         Which edges count: all that are silhouettes for any part of the light, as rays see them, or those of one point
-        near its middle: fewer, and wrong next to round bodies.
+        near its middle: fewer, and a body casts the shadow of the flat one within their loop.
     coverage : {"exact", "table"}
         How samples beyond an edge are found: looked up and tested next to the edge, or looked up alone, as published.
     spread, tile

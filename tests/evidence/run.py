@@ -4,8 +4,9 @@
    verdict of float64.
 2. Silhouette edges against float64 rays on ten million receivers; areas against exact unions; mutants.
 3. Time against error beside the tracers of ``softshadow.bench.peers``, ratios from one run.
-4. Where the time goes, published ratios beside ours, and a scene that moves, by ``softshadow-bench``.
-5. The table of the README: techniques on shipped scenes.
+4. The native engine: threads, a city's sky, and ten million random receivers.
+5. Where the time goes, published ratios beside ours, and a scene that moves, by ``softshadow-bench``.
+6. The table of the README: techniques on shipped scenes.
 """
 
 from __future__ import annotations
@@ -16,8 +17,10 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import benchmark
+import native
 import numpy as np
 from edges import against_rays, mutants
 from rays64 import judge
@@ -92,6 +95,9 @@ def main() -> int:
         "Where the time goes": lambda: benchmark.passes("bunny", PASSES, chosen.rounds, ("native", "software")),
         "Ratios of the paper": lambda: benchmark.ratios(["bunny", "toruses"], chosen.rounds),
         "A scene that moves": lambda: benchmark.waving(["bunny", "toruses"], MOVING, frames=10),
+        "Natively: threads": lambda: native.threads(chosen.rounds),
+        "Natively: a city's sky": lambda: native.sky(1_000_000),
+        "Natively: random receivers": lambda: native.random_receivers(2_500_000),
         "Shipped scenes": lambda: shipped_scenes(chosen.rounds, chosen.readme),
     }
     earlier, passed = sections_of(chosen.output), True
@@ -205,7 +211,6 @@ def shipped_table(rounds: int) -> list[str]:
         "|---|---|---|---|---|---|---|",
     ]
     techniques = [
-        ss.HardShadowMap(),
         ss.RayTraced(samples=16),
         ss.RayTraced(samples=64),
         ss.RayTraced(samples=64, probes=16),
@@ -216,27 +221,30 @@ def shipped_table(rounds: int) -> list[str]:
     ]
     for name in ("hall", "fork", "toruses"):
         shipped = ss.scenes.load(name)
-        table = ss.compare(
-            shipped.scene,
-            shipped.light,
-            camera=shipped.camera,
-            techniques=techniques,
-            reference=ss.RayTraced(samples=256, passes=8, pattern="low_discrepancy", seed=7),
-            repeats=rounds,
-        )
-        for row in table.rows:
-            settings = row["technique"]
-            words = settings["name"]
-            if "samples" in settings:
-                words += f", {settings['samples']} samples"
-            if settings.get("probes"):
-                words += f", {settings['probes']} probes"
-            penumbra = row["penumbra"]
-            lines.append(
-                f"| {name} | {words} | {row['median_ms']:.0f} | {penumbra['rmse']:.4f} | {penumbra['p99']:.3f} | "
-                f"{penumbra['bias']:+.4f} | {table.reference_standard_error:.4f} |"
+        for here, device in (([ss.HardShadowMap()], "software"), (techniques, "native")):
+            table = ss.compare(
+                shipped.scene,
+                shipped.light,
+                camera=shipped.camera,
+                techniques=here,
+                reference=ss.RayTraced(samples=256, passes=8, pattern="low_discrepancy", seed=7),
+                repeats=rounds,
+                device=device,
             )
+            lines += [table_row(name, row, table.reference_standard_error) for row in table.rows]
     return lines
+
+
+def table_row(scene: str, row: dict[str, Any], reference: float | None) -> str:
+    """A technique on a scene."""
+    settings, penumbra = row["technique"], row["penumbra"]
+    words = settings["name"]
+    words += f", {settings['samples']} samples" if "samples" in settings else ""
+    words += f", {settings['probes']} probes" if settings.get("probes") else ""
+    return (
+        f"| {scene} | {words} | {row['median_ms']:.0f} | {penumbra['rmse']:.4f} | {penumbra['p99']:.3f} | "
+        f"{penumbra['bias']:+.4f} | {reference or float('nan'):.4f} |"
+    )
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ use crate::Progress;
 use crate::context::Context;
 use crate::error::Error;
 use crate::info::Info;
-use crate::visibility::{Options, Visibility, visibility};
+use crate::visibility::{Options, Visibility, run};
 
 /// Techniques beside a reference.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,7 +38,7 @@ pub struct ComparisonRow {
     pub errors: ErrorReport,
 }
 
-/// Compares techniques with a reference; each runs once to warm up and `repeats` times, taking turns.
+/// Compares techniques with a reference, on one device that serves all of them; each runs once to warm up and `repeats` times, taking turns.
 ///
 /// # Errors
 /// Any [`Error`].
@@ -57,12 +57,13 @@ pub fn compare(
         return Err(Error::Settings("compare repeats: must be at least 1".into()));
     }
     let lights = std::slice::from_ref(light);
+    let device = context.device(techniques.iter().chain([reference]))?;
     let total = 1 + techniques.len() as u64 * (u64::from(repeats) + 1);
     let mut done = 0;
     let mut one = |technique: &Technique, standard_error: bool| {
         let options = Options { standard_error, ..Options::default() };
         let mut go_on = |_, _| on_progress(done, total);
-        let result = visibility(context, scene, lights, receivers, technique, &options, &mut go_on)?;
+        let (result, _) = run(device, scene, lights, receivers, technique, &options, None, &mut go_on)?;
         done += 1;
         Ok::<Visibility, Error>(result)
     };

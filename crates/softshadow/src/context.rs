@@ -102,17 +102,18 @@ impl Context {
         lock(&self.main.engine).destroy();
     }
 
-    /// The device that can serve a technique.
-    pub(crate) fn device(&self, technique: &Technique) -> Result<&Device, Error> {
-        let is_served = !technique.draws() || self.main.engine()?.host().features.raster;
-        if is_served || !self.is_automatic {
+    /// The device that can serve all of some techniques: what is compared has to have the same receivers, and those that are drawn are not
+    /// those that rays find, next to silhouettes.
+    pub(crate) fn device<'a>(&self, techniques: impl IntoIterator<Item = &'a Technique>) -> Result<&Device, Error> {
+        let Some(drawing) = techniques.into_iter().find(|technique| technique.draws()) else { return Ok(&self.main) };
+        if !self.is_automatic || self.main.engine()?.host().features.raster {
             return Ok(&self.main);
         }
         if let Some(device) = self.drawing.get() {
             return Ok(device);
         }
         let opened = Device::open(Opening::Adapter(AdapterChoice::Software))
-            .map_err(|error| Error::Device(format!("{} draws triangles: {error}", technique.name())))?;
+            .map_err(|error| Error::Device(format!("{} draws triangles: {error}", drawing.name())))?;
         Ok(self.drawing.get_or_init(|| Device { is_stand_in: true, ..opened }))
     }
 }

@@ -51,8 +51,16 @@ pub fn render(
     }
     let receivers = Receivers::Camera(*camera);
     let shading = Some(options.shading);
-    let (visibility, colors) =
-        run(context, scene, lights, &receivers, technique, &options.options, shading, on_progress)?;
+    let (visibility, colors) = run(
+        context.device([technique])?,
+        scene,
+        lights,
+        &receivers,
+        technique,
+        &options.options,
+        shading,
+        on_progress,
+    )?;
     let gain = options.exposure.exp2();
     let linear = (0..visibility.receivers)
         .map(|index| match (visibility.valid[index], colors.get(index)) {

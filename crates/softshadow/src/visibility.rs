@@ -117,13 +117,14 @@ pub fn visibility(
     options: &Options,
     on_progress: Progress<'_>,
 ) -> Result<Visibility, Error> {
-    Ok(run(context, scene, lights, receivers, technique, options, None, on_progress)?.0)
+    let device = context.device([technique])?;
+    Ok(run(device, scene, lights, receivers, technique, options, None, on_progress)?.0)
 }
 
 /// Computes visibility and, with `picture`, linear colour a receiver.
 #[expect(clippy::too_many_arguments, reason = "the union of what its two callers take")]
 pub(crate) fn run(
-    context: &Context,
+    device: &Device,
     scene: &Scene,
     lights: &[Light],
     receivers: &Receivers,
@@ -140,7 +141,6 @@ pub(crate) fn run(
     if lights.is_empty() {
         return Err(Error::Settings("at least one light is needed".into()));
     }
-    let device = context.device(technique)?;
     let engine = device.engine()?;
     let host = engine.host();
     technique.check_call(source, lights, &host)?;

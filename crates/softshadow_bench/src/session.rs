@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Write;
 
 use serde::Serialize;
-use softshadow::Context;
+use softshadow::{Context, DeviceKind};
 
 use crate::Arguments;
 use crate::case::Case;
@@ -86,7 +86,22 @@ impl<'a> Session<'a> {
         };
         let context = Context::new(&arguments.device)?;
         let environment = Environment::of(context.adapter());
-        Ok(Self { arguments, out, json, context, environment, cases, skipped: 0, failed: 0 })
+        let mut session = Self { arguments, out, json, context, environment, cases, skipped: 0, failed: 0 };
+        session.leave_out_what_draws()?;
+        Ok(session)
+    }
+
+    /// Everything is measured on one device with the same receivers: one that does not draw triangles leaves out what does.
+    fn leave_out_what_draws(&mut self) -> Result<(), BenchError> {
+        if self.context.adapter().device_type != DeviceKind::Native {
+            return Ok(());
+        }
+        let (drawn, cases): (Vec<Case>, Vec<Case>) = self.cases.drain(..).partition(|case| case.technique.draws());
+        self.cases = cases;
+        for case in drawn {
+            self.say(&format!("left out: {} draws triangles; --device software does", case.text))?;
+        }
+        Ok(())
     }
 
     /// Measures everything; returns how many cases failed.

@@ -29,6 +29,14 @@ class Open3D:
         ms = (time.perf_counter() - start) * 1e3
         return ~hidden.numpy().reshape(len(origins), len(targets)), ms
 
+    def along(self, origins: Points, targets: Points) -> tuple[NDArray[np.bool_], float]:
+        """(receivers,), each to a target of its own, and milliseconds of the query alone."""
+        query = o3d.core.Tensor(np.concatenate([origins, targets - origins], axis=1))
+        start = time.perf_counter()
+        hidden = self.scene.test_occlusions(query, tnear=0.0, tfar=1.0)
+        ms = (time.perf_counter() - start) * 1e3
+        return ~hidden.numpy(), ms
+
     def visibility(self, query: Query) -> tuple[Points, float]:
         """(receivers,) and milliseconds of the queries."""
         return rays.visibility(self.visible, query)

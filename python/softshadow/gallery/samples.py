@@ -36,13 +36,12 @@ def silhouettes(studio: Studio) -> Exhibit:
     return Exhibit(
         name="silhouettes",
         title="Standard and accurate silhouettes",
-        look="Edges that are silhouettes for one point of the light alone leave a penumbra under a round body that is "
-        "far too narrow; those of the whole light draw that of the reference.",
+        look="The edges that one point of the light sees around a body are one loop, and cast the shadow of a flat "
+        "body within it. Edges of the whole light draw what rays draw.",
         panels=(*shots, truth.panel, *errors),
         notes=(
             truth.note,
-            "An edge counts by what the receiver sees of its faces. Those of one point form a loop for that point "
-            "alone, so their penumbra is the narrower the finer the mesh.",
+            "Both fold the same counters; only edges and the side from which they are weighed differ.",
         ),
     )
 
