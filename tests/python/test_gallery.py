@@ -52,12 +52,9 @@ def test_pictures_and_page(name, tmp_path):
     assert "nan" not in page
 
 
-def test_standard_silhouettes_miss_the_penumbra():
+def test_standard_silhouettes_cast_the_shadow_of_a_flat_body():
     assert error("silhouettes", "accurate") < 0.05
-    assert error("silhouettes", "standard") > 3 * error("silhouettes", "accurate")
-    standard, truth = values("silhouettes", "standard"), values("silhouettes", "reference")
-    soft = [np.count_nonzero((v > 0.1) & (v < 0.9)) for v in (standard, truth)]
-    assert soft[0] < soft[1] / 2
+    assert 3 * error("silhouettes", "accurate") < error("silhouettes", "standard") < 0.2
 
 
 def test_more_samples_err_less_and_averages_leave_the_steps():

@@ -138,7 +138,7 @@ fn nonsense_is_refused_with_the_way_out() {
         (&["--waving", "0"], "0 is not in 1.."),
         (&["--ratios", "some"], "[possible values: all, published]"),
         (&["--scene", "fork", "--size", "8", "--reference", "hard_shadow_map"], "has no standard error"),
-        (&["--device", "quantum"], "none of 'auto', 'gpu', 'software'"),
+        (&["--device", "quantum"], "none of 'auto', 'gpu', 'native', 'software'"),
     ] {
         let output = bench(arguments);
         assert!(!output.status.success());

@@ -50,10 +50,12 @@ fn no_technique_and_no_part_names_another_technique() {
 }
 
 #[test]
-fn the_engine_names_no_technique() {
-    let sources = below("crates/softshadow_engine/src", "rs");
-    assert!(sources.len() >= 5);
-    assert_eq!(foreign_mentions(&sources, &names()), Vec::<String>::new());
+fn engines_name_no_technique() {
+    for engine in ["crates/softshadow_engine/src", "crates/softshadow_native/src/engine"] {
+        let sources = below(engine, "rs");
+        assert!(sources.len() >= 5);
+        assert_eq!(foreign_mentions(&sources, &names()), Vec::<String>::new());
+    }
 }
 
 #[test]
