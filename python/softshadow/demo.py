@@ -92,8 +92,9 @@ def _show(name: str, scene: Scene, light: Light, camera: Camera, folder: Path, d
     adapter = result.info["adapter"]
     print(f"{name}: {adapter['name']} ({adapter['backend']}, {adapter['device_type']})")
     for row in table.rows:
-        error = row["penumbra"]["rmse"] if row["penumbra"] else float("nan")
-        print(f"  {row['technique']}: {row['median_ms']:.0f} ms, RMSE {error:.4f} in the penumbra", end="")
+        settings, error = row["technique"], row["penumbra"]["rmse"] if row["penumbra"] else float("nan")
+        words = settings["name"] + (f" with {settings['samples']} samples" if "samples" in settings else "")
+        print(f"  {words}: {row['median_ms']:.0f} ms, RMSE {error:.4f} in the penumbra", end="")
         print(f" against {_REFERENCE.samples} samples")
     print(
         f"  picture {folder / f'{name}.png'}, visibility {folder / f'{name}_visibility.png'} and .npy, "
