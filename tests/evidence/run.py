@@ -50,9 +50,8 @@ MEASURED: list[tuple[str, int, str, list[ss.Technique]]] = [
     ("bunny", 1024, "native", NATIVE),
     ("teapots", 1024, "native", NATIVE),
     ("bunny", 512, "software", [RAYS[1], *EDGES, BLENDED]),
-    ("toruses", 512, "software", [RAYS[1], *EDGES]),
 ]
-"""One model on a ground; two teapots and a cow; foliage; several bodies, standing, lying and tilted, over a floor."""
+"""One model on a ground; two teapots and a cow; foliage."""
 BESIDE = (
     "Everything gets the same receivers and light samples. Of ours the time from the camera to visibility counts, "
     "receivers included, of the others the query alone. Probes: 16 samples first, all samples only where those of a "
