@@ -10,3 +10,4 @@ mod ray_traced;
 mod receivers;
 mod resolve;
 mod shading;
+mod whole;

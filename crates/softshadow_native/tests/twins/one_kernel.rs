@@ -61,14 +61,8 @@ impl Receiver {
 #[derive(Clone)]
 pub(crate) struct Case {
     kernel: Kernel,
-    over: Size,
+    items: u32,
     contents: BTreeMap<&'static str, Vec<u32>>,
-}
-
-#[derive(Clone, Copy)]
-enum Size {
-    Items(u32),
-    Groups([u32; 3]),
 }
 
 /// Writes any words: the one kernel whose result can be any bits.
@@ -76,7 +70,7 @@ const WRITE: Kernel = Kernel { file: "resolve/mask_samples.wgsl", entry: "mask_s
 
 impl Case {
     pub(crate) fn new(file: &'static str, entry: &'static str) -> Self {
-        Self { kernel: Kernel { file, entry }, over: Size::Items(1), contents: BTreeMap::new() }
+        Self { kernel: Kernel { file, entry }, items: 1, contents: BTreeMap::new() }
     }
 
     /// The same contents for another kernel.
@@ -97,14 +91,7 @@ impl Case {
 
     /// How many items the pass is over.
     pub(crate) fn items(mut self, count: usize) -> Self {
-        self.over = Size::Items(count as u32);
-        self
-    }
-
-    /// How many groups, where the kernel is one whose size an earlier pass writes.
-    #[expect(dead_code, reason = "no kernel that is tested so far is one")]
-    pub(crate) fn groups(mut self, groups: [u32; 3]) -> Self {
-        self.over = Size::Groups(groups);
+        self.items = count as u32;
         self
     }
 
@@ -141,11 +128,8 @@ impl Case {
             };
             bound.push((name, id));
         }
-        let over = match self.over {
-            // So much work that engines split it: natively after 1024 items.
-            Size::Items(count) => Over::Items { count, work_per_item: 1 << 14 },
-            Size::Groups(groups) => Over::Indirect(making.written("groups", &groups)),
-        };
+        // So much work that engines split it: natively after 1024 items.
+        let over = Over::Items { count: self.items, work_per_item: 1 << 14 };
         let pass = making.plan.compute(KERNEL, "is tested", self.kernel, over);
         for (name, id) in bound {
             pass.bind(name, id);

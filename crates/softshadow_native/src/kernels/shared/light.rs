@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::{Simd, f32x8, prelude::*};
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
 use crate::kernels::lanes::{LANES, Vec3x8};
 
@@ -70,28 +70,7 @@ pub(crate) fn light_view(light: &Light, receiver: Vec3) -> LightView {
     }
 }
 
-/// A point on the light and 1, or a direction towards the sun and 0.
-#[cfg_attr(not(test), expect(dead_code, reason = "kernels of single samples are on their way"))]
-pub(crate) fn light_sample(light: &Light, view: &LightView, record: [f32; 4], receiver: Vec3) -> Vec4 {
-    let [x, y, ..] = record;
-    if light.kind != LIGHT_SPHERE {
-        return record.into();
-    }
-    let share = x * x + y * y;
-    let reach = (view.cap * (2.0 - share * view.cap)).sqrt() / (1.0 - share * view.cap);
-    let offset = (view.x_axis * x + view.y_axis * y) * (reach * view.distance);
-    let outside = 1.0 - view.sine_squared;
-    let to_surface = outside / (1.0 + (1.0 - (1.0 + reach * reach * share) * outside).max(0.0).sqrt());
-    (receiver + (light.center - receiver + offset) * to_surface).extend(1.0)
-}
-
-/// The way from a receiver to a sample: the whole segment, or a direction towards the sun.
-#[cfg_attr(not(test), expect(dead_code, reason = "kernels of single samples are on their way"))]
-pub(crate) fn light_way(target_and_kind: Vec4, receiver: Vec3) -> Vec3 {
-    target_and_kind.truncate() - target_and_kind.w * receiver
-}
-
-/// The ways to eight samples: `light_way` of `light_sample`.
+/// The ways to eight samples: the whole segments, or directions towards the sun.
 #[inline(always)]
 pub(crate) fn eight_ways<S: Simd>(
     simd: S,
@@ -141,7 +120,28 @@ pub(crate) fn light_way_bounds(light: &Light, view: &LightView, receiver: Vec3) 
 mod tests {
     use fearless_simd::{Level, dispatch};
 
+    use glam::Vec4;
+
     use super::*;
+
+    /// One at a time, as the WGSL has it: a point on the light and 1, or a direction towards the sun and 0.
+    fn light_sample(light: &Light, view: &LightView, record: [f32; 4], receiver: Vec3) -> Vec4 {
+        let [x, y, ..] = record;
+        if light.kind != LIGHT_SPHERE {
+            return record.into();
+        }
+        let share = x * x + y * y;
+        let reach = (view.cap * (2.0 - share * view.cap)).sqrt() / (1.0 - share * view.cap);
+        let offset = (view.x_axis * x + view.y_axis * y) * (reach * view.distance);
+        let outside = 1.0 - view.sine_squared;
+        let to_surface = outside / (1.0 + (1.0 - (1.0 + reach * reach * share) * outside).max(0.0).sqrt());
+        (receiver + (light.center - receiver + offset) * to_surface).extend(1.0)
+    }
+
+    /// The way from a receiver to a sample: the whole segment, or a direction towards the sun.
+    fn light_way(target_and_kind: Vec4, receiver: Vec3) -> Vec3 {
+        target_and_kind.truncate() - target_and_kind.w * receiver
+    }
 
     #[test]
     fn eight_ways_are_those_of_each_sample() {
