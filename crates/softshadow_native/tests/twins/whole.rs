@@ -33,7 +33,7 @@ fn edges_give_the_same_visibility() {
 #[test]
 fn glass_and_sets_of_samples_give_the_same_visibility() {
     let glass = |mesh: &Mesh| {
-        let material = Material { opacity: 0.4, ..mesh.material.clone() };
+        let material = Material { opacity: 0.4, ..mesh.material };
         Mesh::new(mesh.name.clone(), mesh.vertices.clone(), mesh.triangles.clone(), material).unwrap()
     };
     let scene = Scene::new(shipped("fork", [8, 8]).0.meshes().iter().map(glass).collect()).unwrap();
