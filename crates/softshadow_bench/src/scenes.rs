@@ -141,9 +141,9 @@ fn place(path: &Path, foot: [f64; 2], turned_deg: f64, height: f64) -> Result<Me
 mod tests {
     use super::*;
 
-    /// A box of 2 × 4 × 1 somewhere, as a file.
-    fn folder_with_a_box() -> PathBuf {
-        let folder = std::env::temp_dir().join(format!("softshadow-bench-{}", std::process::id()));
+    /// A box of 2 × 4 × 1 somewhere, as a file in a folder of the caller's own: tests of a process run at once.
+    fn folder_with_a_box(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("softshadow-bench-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let text = "v 5 7 9\nv 7 7 9\nv 7 11 9\nv 5 11 10\nf 1 2 3\nf 1 3 4\n";
         std::fs::write(folder.join("box.obj"), text).unwrap();
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn models_stand_on_the_ground_at_the_height_of_one() {
-        let measured = find("box.obj", [8, 8], &folder_with_a_box()).unwrap();
+        let measured = find("box.obj", [8, 8], &folder_with_a_box("stands")).unwrap();
         let model = &measured.scene.meshes()[0];
         let expected = [[-0.25, -0.5, -0.125], [0.25, -0.5, -0.125], [0.25, 0.5, -0.125], [-0.25, 0.5, 0.125]];
         assert_eq!((model.name.as_str(), &model.vertices[..]), ("box", &expected[..]));
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn models_are_turned_about_the_upright_axis() {
-        let model = place(&folder_with_a_box().join("box.obj"), [1.0, 2.0], 90.0, 2.0).unwrap();
+        let model = place(&folder_with_a_box("turned").join("box.obj"), [1.0, 2.0], 90.0, 2.0).unwrap();
         // What lay along +x lies along −z.
         let [x, y, z] = model.vertices[1];
         assert!((x - 0.75).abs() < 1e-6 && y == -0.5 && (z - 1.5).abs() < 1e-6, "{x} {y} {z}");
