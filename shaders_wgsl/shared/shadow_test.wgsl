@@ -13,14 +13,32 @@ fn occluder_depth(view: ShadowView, stored: f32) -> f32 {
     return select((1.0 - stored) * view.near, view.near / stored, view.perspective > 0.0);
 }
 
+// Half a texel at the receiver and the slope of its plane within it.
+fn depth_slack(view: ShadowView, receiver: Receiver, depth: f32) -> f32 {
+    let is_face = view.perspective > 0.0;
+    let toward = select(view.forward, (receiver.position - view.eye) / depth, is_face);
+    let cosine = dot(receiver.normal, toward);
+    let steep = min(sqrt(max(1.0 - cosine * cosine, 0.0)) / max(abs(cosine), 1e-6), LARGEST_SLOPE);
+    let slope = select(1.0, steep, receiver.kind == RECEIVER_SURFACE);
+    let rounding = 32.0 * 5.9604645e-8 * (abs(depth) + largest_component(view.eye));
+    return view.texel * select(1.0, depth, is_face) * (1.0 + 0.5 * slope) + rounding;
+}
+
 fn lit_in_view(depth_map: texture_2d_array<f32>, view: ShadowView, layer: u32, receiver: Receiver) -> f32 {
+    let p = receiver.position - view.eye;
+    let scale = select(1.0, dot(view.forward, p), view.perspective > 0.0);
+    let ndc = vec2<f32>(dot(view.clip_x, p), dot(view.clip_y, p)) / scale;
+    return lit_in_texel(depth_map, view, layer, receiver, floor((ndc * vec2<f32>(0.5, -0.5) + 0.5) * view.resolution));
+}
+
+// The same in a given texel at the receiver, or next to it.
+fn lit_in_texel(depth_map: texture_2d_array<f32>, view: ShadowView, layer: u32, receiver: Receiver, near_texel: vec2<f32>) -> f32 {
     let p = receiver.position - view.eye;
     let depth = dot(view.forward, p);
     let is_face = view.perspective > 0.0;
     let scale = select(1.0, depth, is_face);
     let ndc = vec2<f32>(dot(view.clip_x, p), dot(view.clip_y, p)) / scale;
-    let texel_position = (ndc * vec2<f32>(0.5, -0.5) + 0.5) * view.resolution;
-    let texel = clamp(floor(texel_position), vec2<f32>(0.0), vec2<f32>(view.resolution - 1.0));
+    let texel = clamp(near_texel, vec2<f32>(0.0), vec2<f32>(view.resolution - 1.0));
     let stored = textureLoad(depth_map, vec2<u32>(texel), layer, 0).x;
     if (stored <= 0.0) {
         return 1.0;
@@ -30,22 +48,17 @@ fn lit_in_view(depth_map: texture_2d_array<f32>, view: ShadowView, layer: u32, r
     // World offset of a step in clip space, at distance 1 for a face.
     let x_axis = view.clip_x / dot(view.clip_x, view.clip_x);
     let y_axis = view.clip_y / dot(view.clip_y, view.clip_y);
-    let half_texel = view.texel * scale;
     var at_center = depth;
-    var slope = 1.0;
     if (receiver.kind == RECEIVER_SURFACE) {
         let offset = (x_axis * (center_ndc.x - ndc.x) + y_axis * (center_ndc.y - ndc.y)) * scale;
         let toward = select(view.forward, p / depth, is_face);
         let cosine = dot(receiver.normal, toward);
         // Moving sideways by `offset`, the plane's depth changes by this much.
         let change = -dot(receiver.normal, offset) / select(cosine, select(1e-6, -1e-6, cosine < 0.0), abs(cosine) < 1e-6);
-        let limit = LARGEST_SLOPE * half_texel;
+        let limit = LARGEST_SLOPE * view.texel * scale;
         at_center = depth + clamp(change, -limit, limit);
-        slope = min(sqrt(max(1.0 - cosine * cosine, 0.0)) / max(abs(cosine), 1e-6), LARGEST_SLOPE);
     }
-    let rounding = 32.0 * 5.9604645e-8 * (abs(depth) + largest_component(view.eye));
-    let slack = half_texel * (1.0 + 0.5 * slope) + rounding;
-    return select(1.0, 0.0, occluder < at_center - slack);
+    return select(1.0, 0.0, occluder < at_center - depth_slack(view, receiver, depth));
 }
 
 // Whether a view shows a point. Faces of a cube cover the directions without overlap but for their borders: the first that holds the

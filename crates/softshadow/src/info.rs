@@ -27,6 +27,13 @@ pub struct Info {
     pub area_receivers: u64,
     /// Silhouette edges in the lists of all tiles, added up over lights and passes.
     pub silhouette_edges: u64,
+    /// Receivers with more silhouettes before them than `occlusion_camera` found in its steps, added up over lights.
+    pub colliding_receivers: u64,
+    /// Most steps that `occlusion_camera` took for any receiver.
+    pub camera_steps: u32,
+    /// The largest distance, in world units along a light's view, by which something had to be nearer to the light than a receiver moved by
+    /// `occlusion_camera` to hide it.
+    pub camera_bias: f64,
     /// What `depth_complexity` folded for each light: `edges`, `triangles`, or `none` where nothing can hide it.
     pub occluder_units: Vec<&'static str>,
     /// Triangles that the planes of lights cut.
@@ -93,8 +100,9 @@ impl Info {
 /// What a result does not model of its scene, and settings that a call cannot follow where it answers all the same, in words.
 pub(crate) fn notes(scene: &Scene, technique: &Technique, local: &LocalScene) -> Vec<String> {
     let semi_opaque = local.opacities.iter().filter(|opacity| **opacity < 1.0).count();
-    let taken = (semi_opaque > 0 && matches!(technique, Technique::HardShadowMap(_)))
-        .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: hard_shadow_map knows no others"));
+    let knows_opaque_alone = matches!(technique, Technique::HardShadowMap(_) | Technique::OcclusionCamera(_));
+    let taken = (semi_opaque > 0 && knows_opaque_alone)
+        .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: {} knows no others", technique.name()));
     let by_samples = match technique {
         Technique::DepthComplexity(settings) if settings.exact_area && settings.evaluation == Evaluation::Blended => {
             Some("exact_area: evaluation 'blended' answers by samples alone".into())

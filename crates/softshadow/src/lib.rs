@@ -42,7 +42,7 @@ pub use softshadow_techniques::depth_complexity::{
     Counters, Coverage, Evaluation, InitialCounts, OccluderUnit, Silhouettes,
 };
 pub use softshadow_techniques::{
-    Attenuation, DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError,
+    Attenuation, DepthComplexity, HardShadowMap, OcclusionCamera, Ramp, RayTraced, Shading, Technique, TechniqueError,
 };
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};
 

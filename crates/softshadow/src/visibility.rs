@@ -6,6 +6,7 @@ use softshadow_plan::{Content, ContentKey, RunReport, StageReport, Timing};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::depth_complexity::LIST_COUNTS;
 use softshadow_techniques::depth_complexity::blended::{LARGEST_COUNTS, Largest};
+use softshadow_techniques::occlusion_camera::{CAMERA_COUNTS, CameraCounts};
 use softshadow_techniques::parts::VISIBILITY;
 use softshadow_techniques::parts::interleaving::NOISY_BYTES;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
@@ -323,6 +324,9 @@ impl<'a> Collector<'a> {
             traced_receivers: 0,
             area_receivers: 0,
             silhouette_edges: 0,
+            colliding_receivers: 0,
+            camera_steps: 0,
+            camera_bias: 0.0,
             occluder_units: Vec::new(),
             cut_triangles: 0,
             touching_triangles: 0,
@@ -393,6 +397,16 @@ impl<'a> Collector<'a> {
         if let Some(bytes) = outputs.get(LARGEST_COUNTS) {
             let largest: Vec<Largest> = bytemuck::pod_collect_to_vec(bytes);
             self.astray += largest.iter().map(|l| u64::from(l.astray)).sum::<u64>();
+        }
+        if let Some(bytes) = outputs.get(CAMERA_COUNTS) {
+            let counts: Vec<CameraCounts> = bytemuck::pod_collect_to_vec(bytes);
+            let info = &mut self.result.info;
+            for found in counts {
+                info.colliding_receivers += u64::from(found.colliding);
+                info.camera_steps = info.camera_steps.max(found.steps);
+                let bias = f64::from(f32::from_bits(found.bias)) / self.frame.local_length(1.0);
+                info.camera_bias = info.camera_bias.max(bias);
+            }
         }
         let (count, channels) = (self.result.receivers, self.result.channels);
         let copy = |label: &str, width: usize, into: &mut [f32]| {

@@ -5,6 +5,7 @@
 mod block;
 pub mod depth_complexity;
 pub mod hard_shadow_map;
+pub mod occlusion_camera;
 pub mod parts;
 mod program;
 pub mod ray_traced;
@@ -19,6 +20,7 @@ use softshadow_scene::{Light, SampleSpread, SceneError};
 pub use block::{Block, blocks};
 pub use depth_complexity::{Attenuation, DepthComplexity};
 pub use hard_shadow_map::HardShadowMap;
+pub use occlusion_camera::{OcclusionCamera, Ramp};
 pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
 pub use parts::shading::Shading;
@@ -36,6 +38,8 @@ pub enum Technique {
     RayTraced(RayTraced),
     /// One depth map from the light's centre: what softness is compared with.
     HardShadowMap(HardShadowMap),
+    /// Penumbrae from one camera at the light's centre, whose rays bend around silhouettes.
+    OcclusionCamera(OcclusionCamera),
     /// Silhouette edges and counters: as accurate as rays to the same samples.
     DepthComplexity(DepthComplexity),
 }
@@ -66,6 +70,7 @@ impl Technique {
         vec![
             Self::RayTraced(RayTraced::default()),
             Self::HardShadowMap(HardShadowMap::default()),
+            Self::OcclusionCamera(OcclusionCamera::default()),
             Self::DepthComplexity(DepthComplexity::default()),
         ]
     }
@@ -76,6 +81,7 @@ impl Technique {
         match self {
             Self::RayTraced(_) => "ray_traced",
             Self::HardShadowMap(_) => "hard_shadow_map",
+            Self::OcclusionCamera(_) => "occlusion_camera",
             Self::DepthComplexity(_) => "depth_complexity",
         }
     }
@@ -83,7 +89,7 @@ impl Technique {
     /// Whether it works on silhouette edges, and wants to know what hides each light.
     #[must_use]
     pub fn wants_occluders(&self) -> bool {
-        matches!(self, Self::DepthComplexity(_))
+        matches!(self, Self::DepthComplexity(_) | Self::OcclusionCamera(_))
     }
 
     /// Checks the settings.
@@ -94,6 +100,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.check(),
             Self::HardShadowMap(settings) => settings.check(),
+            Self::OcclusionCamera(settings) => settings.check(),
             Self::DepthComplexity(settings) => settings.check(),
         }
     }
@@ -103,7 +110,7 @@ impl Technique {
     pub fn draws(&self) -> bool {
         match self {
             Self::RayTraced(_) => false,
-            Self::HardShadowMap(_) => true,
+            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => true,
             Self::DepthComplexity(settings) => settings.evaluation == depth_complexity::Evaluation::Blended,
         }
     }
@@ -125,6 +132,7 @@ impl Technique {
         }
         match self {
             Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
+            Self::OcclusionCamera(settings) => settings.check_call(lights),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
     }
@@ -136,7 +144,7 @@ impl Technique {
     pub fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_scene(scene),
-            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::OcclusionCamera(_) => Ok(()),
         }
     }
 
@@ -147,6 +155,7 @@ impl Technique {
     pub fn check_occluders(&self, occluders: &[Arc<OccluderContents>]) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_occluders(occluders),
+            Self::OcclusionCamera(settings) => settings.check_occluders(occluders.iter().map(Arc::as_ref)),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
     }
@@ -157,7 +166,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.spread == SampleSpread::Interleaved,
             Self::DepthComplexity(settings) => settings.spread == SampleSpread::Interleaved,
-            Self::HardShadowMap(_) => false,
+            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => false,
         }
     }
 
@@ -166,7 +175,7 @@ impl Technique {
     pub fn stages(&self) -> u32 {
         match self {
             Self::DepthComplexity(settings) => settings.stages(),
-            Self::RayTraced(_) | Self::HardShadowMap(_) => 1,
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 1,
         }
     }
 
@@ -176,7 +185,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.passes,
             Self::DepthComplexity(settings) => settings.passes,
-            Self::HardShadowMap(_) => 1,
+            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 1,
         }
     }
 
@@ -186,7 +195,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.samples,
             Self::DepthComplexity(settings) => settings.samples,
-            Self::HardShadowMap(_) => 1,
+            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 1,
         }
     }
 
@@ -196,7 +205,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.halo_rows(),
             Self::DepthComplexity(settings) => settings.halo_rows(),
-            Self::HardShadowMap(_) => 0,
+            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 0,
         }
     }
 
@@ -206,7 +215,7 @@ impl Technique {
     pub fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64, is_semi_opaque: bool) -> u64 {
         match self {
             Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes, is_semi_opaque),
-            Self::HardShadowMap(_) => 4 * channels,
+            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 4 * channels,
             Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels, is_semi_opaque),
         }
     }
@@ -217,6 +226,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::plan(request, settings),
             Self::HardShadowMap(settings) => hard_shadow_map::plan(request, settings),
+            Self::OcclusionCamera(settings) => occlusion_camera::plan(request, settings),
             Self::DepthComplexity(settings) => depth_complexity::plan(request, settings),
         }
     }
@@ -229,6 +239,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::values(request, settings, light, pass),
             Self::HardShadowMap(settings) => hard_shadow_map::values(request, settings, light),
+            Self::OcclusionCamera(settings) => occlusion_camera::values(request, settings, light),
             Self::DepthComplexity(settings) => depth_complexity::values(request, settings, light, pass),
         }
     }

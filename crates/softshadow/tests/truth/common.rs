@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::sync::OnceLock;
 
 use softshadow::{
-    Camera, Context, DepthComplexity, DeviceChoice, HardShadowMap, Light, LightShape, Options, Points, RayTraced,
+    Camera, Context, DepthComplexity, DeviceChoice, HardShadowMap, Light, LightShape, OcclusionCamera, Options, Points, RayTraced,
     Receivers, Scene, Technique, Visibility, look_at, procedural, visibility,
 };
 
@@ -55,6 +55,10 @@ pub(crate) fn ray_traced(samples: u32) -> Technique {
 
 pub(crate) fn hard_shadow_map(resolution: u32) -> Technique {
     Technique::HardShadowMap(HardShadowMap { resolution })
+}
+
+pub(crate) fn occlusion_camera(resolution: u32) -> Technique {
+    Technique::OcclusionCamera(OcclusionCamera { resolution, ..OcclusionCamera::default() })
 }
 
 pub(crate) fn depth_complexity(samples: u32) -> Technique {

@@ -131,8 +131,8 @@ pub(crate) fn views(request: &Request<'_>, resolution: u32) -> Vec<ShadowView> {
     }
 }
 
-/// Corners of the box around casters and receivers in local space; `None` without casters.
-fn hull(request: &Request<'_>) -> Option<[DVec3; 8]> {
+/// Lowest and highest corner of the box around casters and receivers in local space; `None` without casters.
+pub(crate) fn bounds(request: &Request<'_>) -> Option<(DVec3, DVec3)> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     // The hierarchy's root knows the bounds of its sub-scene.
     for root in request.scene.local.sub_scenes.iter().filter_map(|s| s.nodes.first()) {
@@ -150,7 +150,12 @@ fn hull(request: &Request<'_>) -> Option<[DVec3; 8]> {
     }
     // A hair of room, so that no receiver stands on the border.
     let room = (high - low).max_element() * 1e-4;
-    let (low, high) = (low - room, high + room);
+    Some((low - room, high + room))
+}
+
+/// Corners of that box.
+fn hull(request: &Request<'_>) -> Option<[DVec3; 8]> {
+    let (low, high) = bounds(request)?;
     Some(std::array::from_fn(|i| {
         let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };
         DVec3::new(pick(0, low.x, high.x), pick(1, low.y, high.y), pick(2, low.z, high.z))

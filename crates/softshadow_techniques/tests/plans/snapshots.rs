@@ -1,6 +1,6 @@
 //! A handful of plans as text: what a change to a technique changes stands in the diff.
 
-use softshadow_techniques::{DepthComplexity, HardShadowMap, RayTraced, Request, Shading, Technique};
+use softshadow_techniques::{DepthComplexity, HardShadowMap, OcclusionCamera, RayTraced, Request, Shading, Technique};
 
 use crate::requests::Fixture;
 
@@ -38,6 +38,13 @@ fn hard_shadow_map_within_the_scene() {
     request.wants.picture = Some(Shading::Modulated);
     let technique = Technique::HardShadowMap(HardShadowMap { resolution: 512 });
     insta::assert_snapshot!(technique.plan(&request));
+}
+
+#[test]
+fn occlusion_camera_points() {
+    let fixture = Fixture::new();
+    let technique = Technique::OcclusionCamera(OcclusionCamera { resolution: 512, ..OcclusionCamera::default() });
+    insta::assert_snapshot!(technique.plan(&fixture.request(1, fixture.points())));
 }
 
 fn silhouettes(samples: u32) -> Technique {
