@@ -38,7 +38,7 @@ def parse_technique(text: str) -> Technique:
     if kind is None:
         known = ", ".join(known.replace("_", "-") for known in TECHNIQUES)
         raise argparse.ArgumentTypeError(f"unknown technique '{name}'; there are {known}")
-    by_type = {"int": _whole, "bool": _truth}
+    by_type = {"int": _whole, "float": _number, "bool": _truth}
     readers: Readers = {field.name: by_type.get(str(field.type), str) for field in fields(kind)}
     technique: Technique = _made(kind, **_settings(rest, readers))
     return technique

@@ -10,12 +10,13 @@ import numpy as np
 
 from . import _core
 from .by_value import set_fields
-from .checks import whole
+from .checks import real, whole
 from .errors import SettingsError
 
 _DEFAULTS: dict[str, dict[str, Any]] = {row["name"]: row for row in json.loads(_core.technique_defaults())}
 _RAY_TRACED = _DEFAULTS["ray_traced"]
 _HARD_SHADOW_MAP = _DEFAULTS["hard_shadow_map"]
+_OCCLUSION_CAMERA = _DEFAULTS["occlusion_camera"]
 _DEPTH_COMPLEXITY = _DEFAULTS["depth_complexity"]
 
 
@@ -30,6 +31,8 @@ class Technique:
             value = getattr(self, field.name)
             if field.type == "int":
                 set_fields(self, **{field.name: whole(f"{self.name} {field.name}", value)})
+            elif field.type == "float":
+                set_fields(self, **{field.name: real(f"{self.name} {field.name}", value, SettingsError)})
             elif field.type == "bool":
                 if not isinstance(value, (bool, np.bool_)):
                     raise SettingsError(f"{self.name} {field.name}: True or False expected, got {value!r}")
@@ -103,6 +106,40 @@ class HardShadowMap(Technique):
 
     name: ClassVar[str] = "hard_shadow_map"
     resolution: int = _HARD_SHADOW_MAP["resolution"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OcclusionCamera(Technique):
+    """One camera at the light's centre whose rays bend around silhouettes (Mo, Popescu and Wyman 2007).
+
+    Both halves of the penumbra and an umbra that shrinks as the light grows, from a depth map and a distortion map.
+    Past one straight edge the visible share of a rectangle, disc, polygon or sun is exact; a map tells two or three
+    silhouettes before a receiver apart, and ``info["colliding_receivers"]`` counts those with more. Semi-opaque
+    triangles are taken for opaque; ``info["notes"]`` says so.
+
+    Parameters
+    ----------
+    resolution : int
+        Width and height of the depth map in texels, 16 to 4096, a multiple of 4; the distortion maps have a quarter.
+    steps : {1, 2, 3}
+        How often a receiver is moved past a silhouette.
+    bias : float
+        What hides a receiver where it was moved is nearer to the light by this share (0 to 1) of the distance from
+        silhouette to receiver. ``info["camera_bias"]`` is the largest in world units.
+    ramp : {"outline", "bernstein"}
+        The share of the light's own outline beyond a silhouette, or 3x² − 2x³, as published, for all lights.
+
+    Raises
+    ------
+    SettingsError
+        For a setting outside its range, polygons of more than 64 corners, and triangles that touch a sphere light.
+    """
+
+    name: ClassVar[str] = "occlusion_camera"
+    resolution: int = _OCCLUSION_CAMERA["resolution"]
+    steps: int = _OCCLUSION_CAMERA["steps"]
+    bias: float = _OCCLUSION_CAMERA["bias"]
+    ramp: str = _OCCLUSION_CAMERA["ramp"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,7 +218,9 @@ class DepthComplexity(Technique):
     unit: str = _DEPTH_COMPLEXITY["unit"]
 
 
-TECHNIQUES: dict[str, type[Technique]] = {kind.name: kind for kind in (RayTraced, HardShadowMap, DepthComplexity)}
+TECHNIQUES: dict[str, type[Technique]] = {
+    kind.name: kind for kind in (RayTraced, HardShadowMap, OcclusionCamera, DepthComplexity)
+}
 """Every technique by its name."""
 
 

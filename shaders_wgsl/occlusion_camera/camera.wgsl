@@ -15,6 +15,12 @@ const RAMP_OUTLINE: u32 = 0u;
 // surfaces lean away from the light.
 const RANGE: f32 = 1.5;
 
+// Texels of the depth map across one of the distortion map: that knows where a silhouette lies exactly, and need not be fine.
+const COARSER: f32 = 4.0;
+
+// How far a texel of the distortion map can speak for, in halves of the depth map's texels: half its own diagonal, and some.
+const MARGIN: f32 = 6.0;
+
 struct CameraLight {
     x_way: vec3<f32>,
     outline: u32,

@@ -49,7 +49,7 @@ fn distortion_at(seen: Seen, is_inside: bool, at: vec2<f32>) -> Distortion {
     let texel = floor(at);
     let last = seen.view.resolution - 1.0;
     let layer = 4u * seen.layer + select(0u, 2u, is_inside);
-    let place = vec2<u32>(clamp(texel, vec2<f32>(0.0), vec2<f32>(last)));
+    let place = vec2<u32>(clamp(texel, vec2<f32>(0.0), vec2<f32>(last)) / COARSER);
     let first = textureLoad(distortion_map, place, layer, 0);
     let second = textureLoad(distortion_map, place, layer + 1u, 0);
     let is_within = all(texel >= vec2<f32>(0.0)) && all(texel <= vec2<f32>(last));

@@ -172,6 +172,10 @@ NONSENSE = [
     (lambda: ss.DepthComplexity(unit=None), ss.SettingsError, "unit"),
     (lambda: ss.HardShadowMap(resolution=0), ss.SettingsError, "resolution"),
     (lambda: ss.HardShadowMap(resolution=2**31), ss.SettingsError, "resolution"),
+    (lambda: ss.OcclusionCamera(resolution=4097), ss.SettingsError, "resolution"),
+    (lambda: ss.OcclusionCamera(bias=2.0), ss.SettingsError, "bias"),
+    (lambda: ss.OcclusionCamera(bias="much"), ss.SettingsError, "bias"),
+    (lambda: ss.OcclusionCamera(ramp="straight"), ss.SettingsError, "ramp"),
     # calls
     (lambda: visibility(SCENE, LIGHT), ss.SceneError, "either a camera or points"),
     (

@@ -137,3 +137,15 @@ def test_false_colours():
 def test_numbers_are_left_out_where_nothing_was_measured():
     blank = Panel(name="n", caption="c", image=np.zeros((1, 1, 3), np.uint8))
     assert blank.numbers == ""
+
+
+def test_the_occlusion_camera_follows_a_growing_light():
+    umbrae = [(values("growing", f"camera_{radius}") < 0.002).sum() for radius in (0.05, 0.15, 0.3)]
+    assert umbrae[2] < 0.7 * umbrae[0]
+    assert all(error("growing", f"camera_{radius}") < 0.2 for radius in (0.05, 0.15, 0.3))
+
+
+def test_the_occlusion_cameras_known_faults_are_there_to_see():
+    assert error("stairs", "bias") < error("stairs", "without")
+    assert np.nanmean(values("stairs", "without_error")) < np.nanmean(values("stairs", "bias_error"))
+    assert error("concavities", "three") < error("concavities", "hard")

@@ -361,7 +361,9 @@ def test_defaults_are_those_of_the_library(scene, floor_points):
     from softshadow import _core  # noqa: TID251 - what the defaults are compared with
 
     for row in json.loads(_core.technique_defaults()):
-        kind = {kind.name: kind for kind in (ss.RayTraced, ss.HardShadowMap, ss.DepthComplexity)}[row["name"]]
+        kind = {kind.name: kind for kind in (ss.RayTraced, ss.HardShadowMap, ss.OcclusionCamera, ss.DepthComplexity)}[
+            row["name"]
+        ]
         assert json.loads(kind().to_json()) == row
     info = visibility(scene, light_above(), points=floor_points).info
     assert info["technique"] == json.loads(ss.RayTraced().to_json())
@@ -374,3 +376,19 @@ def test_doctor_lists_adapters():
     assert found.chosen in str(found)
     assert all(adapter["name"] in str(found) for adapter in found.adapters)
     json.dumps(found.to_dict())
+
+
+def test_the_occlusion_camera_is_soft_and_says_what_it_did(scene, floor_points):
+    technique = ss.OcclusionCamera(resolution=256, bias=0.1)
+    result = visibility(scene, light_above(), points=floor_points, technique=technique)
+    assert ((result.values > 0.05) & (result.values < 0.95)).any()
+    assert result.info["technique"] == {
+        "name": "occlusion_camera",
+        "resolution": 256,
+        "steps": 3,
+        "bias": pytest.approx(0.1),
+        "ramp": "outline",
+    }
+    assert result.info["camera_steps"] in (1, 2, 3)
+    assert result.info["camera_bias"] > 0
+    assert result.info["colliding_receivers"] >= 0

@@ -14,11 +14,11 @@
 //! above the receiver's horizon. The paper takes spheres and the Bernstein ramp 3x² − 2x³ for all (`ramp: bernstein`).
 //!
 //! **Maps.** One for each side of the hard shadow: the silhouette's image, its normal away from the occluder, its depth and that of what is seen
-//! past it; six floats and the edge's number in a texel. Where edges overlap, the nearest stays. Quads end in half circles, which fill the
-//! gaps at corners. They reach as far as the surface that is seen past the edge, and half as far again, can be shaded. The map is never
+//! past it; six floats and the edge's number in a texel, which is four texels of the depth map wide: it knows exactly where the silhouette
+//! lies. Where edges overlap, the nearest stays. Quads grow longer outwards, which fills the gaps at corners up to 90 degrees. They reach as far as the surface that is seen past the edge, and half as far again, can be shaded. The map is never
 //! filtered: light is evaluated in four texels and interpolated.
 //!
-//! **Parameters.** `resolution` of the maps, 16 to 4,096 texels a side. `steps`, 1 to 3: how often a receiver is distorted anew by the
+//! **Parameters.** `resolution` of the depth map, 16 to 4,096 texels a side, a multiple of 4. `steps`, 1 to 3: how often a receiver is distorted anew by the
 //! silhouette at the place where it arrived. What belongs to one penumbra (normals within 45 degrees, lines within a quarter of the half
 //! width) counts once, a silhouette whose range of depths does not hold the receiver not at all, others are multiplied. `bias`: a receiver counts
 //! as hidden where it arrives only by what is nearer to the light by this share of the distance from silhouette to receiver; `info` has
@@ -34,8 +34,8 @@
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{
-    Blend, ColorTarget, Compare, Count, DepthTarget, Kernel, Origin, Over, Plan, Raster, RasterKernel, ResourceId, Shape,
-    TextureFormat, Values, VertexSource,
+    Blend, ColorTarget, Compare, Count, DepthTarget, Kernel, Origin, Over, Plan, Raster, RasterKernel, ResourceId,
+    Shape, TextureFormat, Values, VertexSource,
 };
 use softshadow_scene::{Light, LightSampling, LightShape, SamplePattern};
 
@@ -44,9 +44,9 @@ use crate::parts::VISIBILITY;
 use crate::parts::light_buffers::{self, LightBuffers, Sampling};
 use crate::parts::light_silhouettes::{self, LightSilhouettes};
 use crate::parts::occluder_buffers::OccluderContents;
+use crate::parts::receivers;
 use crate::parts::shading::{self, Seen};
 use crate::parts::shadow_views::{self, ShadowMaps};
-use crate::parts::receivers;
 use crate::request::Request;
 
 /// Settings of `occlusion_camera`.
@@ -86,6 +86,8 @@ pub const CAMERA_COUNTS: &str = "camera counts";
 const NAME: &str = "occlusion_camera";
 /// `MOST_STEPS` of `look_up.wgsl`.
 const MOST_STEPS: u32 = 3;
+/// `COARSER` of `camera.wgsl`.
+const COARSER: u32 = 4;
 /// Corners of a polygonal light.
 const MOST_CORNERS: usize = 64;
 /// Two triangles.
@@ -157,6 +159,9 @@ impl OcclusionCamera {
         if !(16..=4096).contains(&self.resolution) {
             return fail("resolution", format!("must lie between 16 and 4096, got {}", self.resolution));
         }
+        if !self.resolution.is_multiple_of(COARSER) {
+            return fail("resolution", format!("must be a multiple of {COARSER}, got {}", self.resolution));
+        }
         if !(1..=MOST_STEPS).contains(&self.steps) {
             return fail("steps", format!("must lie between 1 and {MOST_STEPS}, got {}", self.steps));
         }
@@ -173,9 +178,8 @@ impl OcclusionCamera {
         });
         match corners.max() {
             Some(count) if count > MOST_CORNERS => {
-                let reason = format!(
-                    "a polygon has {count} corners, at most {MOST_CORNERS} are taken; trace rays instead"
-                );
+                let reason =
+                    format!("a polygon has {count} corners, at most {MOST_CORNERS} are taken; trace rays instead");
                 Err(TechniqueError::Setting { technique: NAME, setting: "light", reason })
             }
             _ => Ok(()),
@@ -258,7 +262,7 @@ fn append_distortion(
     camera_light: ResourceId,
 ) -> ResourceId {
     let views = shadow_views::views(request, settings.resolution).len() as u32;
-    let size = [settings.resolution; 2];
+    let size = [settings.resolution / COARSER; 2];
     let texture = |plan: &mut Plan, label: &str, format, layers| {
         plan.resource(label, Shape::Texture { format, size, layers }, Origin::Transient)
     };

@@ -15,6 +15,7 @@ use softshadow_techniques::depth_complexity::blended::{Largest, Packing, TARGETS
 use softshadow_techniques::depth_complexity::{
     AttenuationScale, ClusterRange, CoverSettings, FoldSettings, FrameRecord, SampleBins, TouchingRange,
 };
+use softshadow_techniques::occlusion_camera::{CameraCounts, CameraLight, MapLayer};
 use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
 use softshadow_techniques::parts::light_silhouettes::{EdgeCorners, LIGHT_SILHOUETTE_BYTES};
@@ -114,6 +115,7 @@ fn layout(body: &str) -> Layout {
             "[f32; 3]" => 12,
             "[u32; 4]" => 16,
             "[[u32; 4]; 64]" => 64 * 16,
+            "[[f32; 2]; MOST_CORNERS]" => 64 * 8,
             "[ShadowView; 6]" => 6 * size_of::<ShadowView>() as u32,
             other => panic!("teach this test the size of '{other}'"),
         };

@@ -15,8 +15,9 @@ _INTRODUCTION = """\
 # Gallery
 
 Made by `python -m softshadow.gallery`, after the figures of V. Forest, L. Barthe, M. Paulin, "Accurate Shadows by
-Depth Complexity Sampling", 2008. Milliseconds are those of one whole picture by compiled kernels on a prepared scene,
-taken once; RMSE is that of visibility over the penumbra, against a reference of many rays. In differences red is too
+Depth Complexity Sampling", 2008, and of Q. Mo, V. Popescu, C. Wyman, "The Soft Shadow Occlusion Camera", 2007.
+Milliseconds are those of one whole picture by compiled kernels on a prepared scene, taken once; RMSE is that of
+visibility over the penumbra, against a reference of many rays. In differences red is too
 bright, blue too dark."""
 
 

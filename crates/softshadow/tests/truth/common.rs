@@ -4,8 +4,8 @@ use std::cell::Cell;
 use std::sync::OnceLock;
 
 use softshadow::{
-    Camera, Context, DepthComplexity, DeviceChoice, HardShadowMap, Light, LightShape, OcclusionCamera, Options, Points, RayTraced,
-    Receivers, Scene, Technique, Visibility, look_at, procedural, visibility,
+    Camera, Context, DepthComplexity, DeviceChoice, HardShadowMap, Light, LightShape, OcclusionCamera, Options, Points,
+    RayTraced, Receivers, Scene, Technique, Visibility, look_at, procedural, visibility,
 };
 
 use crate::shapes::Point;

@@ -48,26 +48,33 @@ fn past_one_edge_the_ramp_is_that_of_a_rectangle() {
         let floor = plate([-1.0, 1.0], [-1.0, 1.0], -0.001);
         let triangles: Vec<Triangle> = half_plane(angle, height, size).into_iter().chain(floor).collect();
         let reach = 0.3 * height;
-        let positions = Random(5).points(4000, [-reach, reach], [-reach, reach], [0.0, 0.0]);
+        let positions = Random(5).points(1500, [-reach, reach], [-reach, reach], [0.0, 0.0]);
         let truth = |p: &Point| {
             let across = p[0] * angle.cos() + p[1] * angle.sin();
             half_plane_over_rectangle(across * (1.0 - top / height), angle, half).unwrap()
         };
         let receivers = surface_points(positions.clone(), UP);
-        let error = |technique: &Technique| {
-            errors(&seen(&triangles, &light, &receivers, technique).values, positions.iter().map(truth))
+        // The paper's ramp over the same penumbra, which is as wide as the light is across the edge.
+        let published = |p: &Point| {
+            let across = p[0] * angle.cos() + p[1] * angle.sin();
+            let reach = half[0] * f64::abs(angle.cos()) + half[1] * f64::abs(angle.sin());
+            let x = (0.5 - 0.5 * across * (1.0 - top / height) / reach).clamp(0.0, 1.0);
+            x * x * (3.0 - 2.0 * x)
         };
-        let [outline, bernstein, hard] = [
-            occlusion_camera(1024),
-            camera(OcclusionCamera { ramp: Ramp::Bernstein, ..OcclusionCamera::default() }),
-            hard_shadow_map(1024),
-        ]
-        .map(|technique| error(&technique));
-        println!("edge at {angle}, height {height}: outline {outline:.4?}, bernstein {bernstein:.4?}, hard {hard:.4?}");
-        assert!(outline[0] < 0.01, "{outline:?}");
-        assert!(hard[0] > 0.4, "{hard:?}");
-        // numerics.md: smoothstep is off by .096 for a square light with an edge along an axis, by .037 at 45 degrees.
-        assert!(bernstein[0] > if angle == 0.0 { 0.09 } else { 0.02 } && bernstein[0] < 0.1, "{bernstein:?}");
+        let values = |technique: &Technique| seen(&triangles, &light, &receivers, technique);
+        let outline = values(&occlusion_camera(1024));
+        let bernstein = values(&camera(OcclusionCamera { ramp: Ramp::Bernstein, ..OcclusionCamera::default() }));
+        let hard = errors(&values(&hard_shadow_map(1024)).values, positions.iter().map(truth));
+        let found = errors(&outline.values, positions.iter().map(truth));
+        let as_published = errors(&bernstein.values, positions.iter().map(published));
+        let apart = errors(&bernstein.values, positions.iter().map(truth));
+        println!(
+            "edge at {angle}, height {height}: outline {found:.4?}, bernstein {as_published:.4?} (truth {apart:.4?}), hard {hard:.4?}"
+        );
+        assert!(found[0] < 0.005 && as_published[0] < 0.005, "{found:?} {as_published:?}");
+        assert_eq!((outline.info.colliding_receivers, outline.info.camera_steps), (0, 1), "one edge is found at once");
+        // numerics.md: smoothstep is off by .096 for a rectangle with an edge along an axis.
+        assert!(hard[0] > 0.4 && apart[0] > if angle == 0.0 { 0.09 } else { 0.01 }, "{hard:?} {apart:?}");
     }
 }
 
@@ -77,7 +84,7 @@ fn a_triangular_light_is_not_its_own_mirror_image() {
     let outline = vec![[-0.3, -0.2], [0.4, -0.2], [-0.1, 0.4]];
     let backwards: Vec<[f64; 2]> = outline.iter().rev().copied().collect();
     let mirrored: Vec<[f64; 2]> = outline.iter().map(|c| c.map(|x| -x)).collect();
-    let positions = Random(6).points(2000, [-0.3, 0.3], [-0.3, 0.3], [0.0, 0.0]);
+    let positions = Random(6).points(1000, [-0.3, 0.3], [-0.3, 0.3], [0.0, 0.0]);
     let receivers = surface_points(positions, UP);
     for angle in [0.0, 1.0, 2.7] {
         let triangles = half_plane(angle, 1.0, 0.8);
@@ -85,18 +92,18 @@ fn a_triangular_light_is_not_its_own_mirror_image() {
             let light = lamp(LightShape::Polygon { outline: outline.to_vec() }, [0.0, 0.0, 2.0]);
             seen(&triangles, &light, &receivers, &technique).values
         };
-        let exact = of(&outline, ray_traced(1024));
+        let exact = of(&outline, ray_traced(256));
         let [found, other, spoilt] = [&outline, &backwards, &mirrored]
             .map(|outline| errors(&of(outline, occlusion_camera(1024)), floats(&exact)));
         println!("triangular light, edge at {angle}: {found:.4?}; of its mirror image {spoilt:.4?}");
-        assert!(found[0] < 0.02 && other[0] < 0.02, "{found:?} {other:?}");
+        assert!(found[0] < 0.03 && other[0] < 0.03, "{found:?} {other:?}");
         assert!(spoilt[0] > 0.05, "{spoilt:?}");
     }
 }
 
 #[test]
 fn every_outline_and_lights_aslant_meet_rays() {
-    let positions = Random(8).points(3000, [-0.4, 0.4], [-0.4, 0.4], [0.0, 0.0]);
+    let positions = Random(8).points(1200, [-0.4, 0.4], [-0.4, 0.4], [0.0, 0.0]);
     let receivers = surface_points(positions, UP);
     let triangles = half_plane(0.3, 0.8, 0.8);
     let sun = look_at([0.3, 0.2, 1.0], [0.0; 3], None).unwrap();
@@ -110,10 +117,10 @@ fn every_outline_and_lights_aslant_meet_rays() {
     ];
     for (name, light) in cases {
         let of = |technique| seen(&triangles, &light, &receivers, &technique).values;
-        let exact = of(ray_traced(1024));
+        let exact = of(ray_traced(256));
         let [soft, hard] = [occlusion_camera(1024), hard_shadow_map(1024)].map(|t| errors(&of(t), floats(&exact)));
         println!("{name}: {soft:.4?}, hard {hard:.4?}");
-        assert!(soft[1] < 0.02 && soft[0] < 0.06, "{name}: {soft:?}");
+        assert!(soft[1] < 0.01 && soft[0] < 0.05, "{name}: {soft:?}");
         assert!(hard[1] > 0.1, "{name}: {hard:?}");
     }
 }
@@ -154,14 +161,15 @@ fn comb(count: u32, pitch: f64) -> Vec<Triangle> {
 
 #[test]
 fn a_comb_of_more_edges_than_steps_is_counted() {
-    let receivers = surface_points(Random(11).points(3000, [-0.5, 0.5], [-0.3, 0.3], [0.0, 0.0]), UP);
+    let receivers = surface_points(Random(11).points(800, [-0.5, 0.5], [-0.3, 0.3], [0.0, 0.0]), UP);
     let light = lamp(rectangle(0.2, 0.2), [0.0, 0.0, 2.0]);
     let mut found = Vec::new();
     for count in 1..=8 {
         let triangles = comb(count, 0.08);
-        let exact = seen(&triangles, &light, &receivers, &ray_traced(1024)).values;
+        let exact = seen(&triangles, &light, &receivers, &ray_traced(256)).values;
         let soft = seen(&triangles, &light, &receivers, &occlusion_camera(1024));
-        let of = |technique: &Technique| errors(&seen(&triangles, &light, &receivers, technique).values, floats(&exact));
+        let of =
+            |technique: &Technique| errors(&seen(&triangles, &light, &receivers, technique).values, floats(&exact));
         let one = of(&camera(OcclusionCamera { steps: 1, ..OcclusionCamera::default() }));
         let hard = of(&hard_shadow_map(1024));
         let error = errors(&soft.values, floats(&exact));
@@ -173,7 +181,6 @@ fn a_comb_of_more_edges_than_steps_is_counted() {
         assert!(error[1] < hard[1]);
         found.push((soft.info.colliding_receivers, error[1]));
     }
-    assert_eq!(found[0].0, 0, "one bar has two edges");
     assert!(found[3..].iter().all(|(colliding, _)| *colliding > 0), "{found:?}");
     assert!(found[7].1 > found[0].1, "more edges, more error");
 }
@@ -183,7 +190,7 @@ fn two_facing_edges_are_not_taken_for_one() {
     // A slot, far narrower than the penumbra: where half of the light is beyond either edge the product lets a quarter through, and
     // next to nothing passes.
     let light = lamp(rectangle(0.4, 0.4), [0.0, 0.0, 2.0]);
-    let receivers = surface_points(Random(12).points(3000, [-0.3, 0.3], [-0.2, 0.2], [0.0, 0.0]), UP);
+    let receivers = surface_points(Random(12).points(1000, [-0.3, 0.3], [-0.2, 0.2], [0.0, 0.0]), UP);
     for width in [0.02, 0.1, 0.3] {
         let triangles: Vec<Triangle> = [-1.0, 1.0]
             .iter()
@@ -192,9 +199,10 @@ fn two_facing_edges_are_not_taken_for_one() {
                 plate([x[0].min(x[1]), x[0].max(x[1])], [-0.8, 0.8], 1.0)
             })
             .collect();
-        let exact = seen(&triangles, &light, &receivers, &ray_traced(1024)).values;
+        let exact = seen(&triangles, &light, &receivers, &ray_traced(256)).values;
         let soft = seen(&triangles, &light, &receivers, &occlusion_camera(1024));
-        let one = seen(&triangles, &light, &receivers, &camera(OcclusionCamera { steps: 1, ..OcclusionCamera::default() }));
+        let one =
+            seen(&triangles, &light, &receivers, &camera(OcclusionCamera { steps: 1, ..OcclusionCamera::default() }));
         let [error, single] = [&soft, &one].map(|seen| errors(&seen.values, floats(&exact)));
         println!("slot {width}: {error:.3?}, {} steps; one step {single:.3?}", soft.info.camera_steps);
         assert!(soft.info.camera_steps <= 3 && one.info.camera_steps == 1);
@@ -209,8 +217,8 @@ fn between_complementary_half_planes_a_quarter_passes_at_most() {
     let mut triangles = half_plane(0.0, 1.0, 0.8);
     triangles.extend(plate([0.0, 0.8], [-0.8, 0.8], 1.2));
     let light = lamp(rectangle(0.4, 0.4), [0.0, 0.0, 2.0]);
-    let receivers = surface_points(Random(13).points(3000, [-0.3, 0.3], [-0.2, 0.2], [0.0, 0.0]), UP);
-    let exact = seen(&triangles, &light, &receivers, &ray_traced(1024)).values;
+    let receivers = surface_points(Random(13).points(1000, [-0.3, 0.3], [-0.2, 0.2], [0.0, 0.0]), UP);
+    let exact = seen(&triangles, &light, &receivers, &ray_traced(256)).values;
     let error = errors(&seen(&triangles, &light, &receivers, &occlusion_camera(1024)).values, floats(&exact));
     println!("two complementary half planes: {error:.3?}");
     assert!(error[0] <= 0.26, "{error:?}");
@@ -221,8 +229,8 @@ fn two_slats_side_by_side_have_two_penumbrae() {
     let light = lamp(rectangle(0.3, 0.3), [0.0, 0.0, 2.0]);
     let mut triangles = plate([-0.3, -0.05], [-0.6, 0.6], 1.0);
     triangles.extend(plate([0.05, 0.3], [-0.6, 0.6], 1.0));
-    let receivers = surface_points(Random(15).points(4000, [-0.6, 0.6], [-0.3, 0.3], [0.0, 0.0]), UP);
-    let exact = seen(&triangles, &light, &receivers, &ray_traced(1024)).values;
+    let receivers = surface_points(Random(15).points(1500, [-0.6, 0.6], [-0.3, 0.3], [0.0, 0.0]), UP);
+    let exact = seen(&triangles, &light, &receivers, &ray_traced(256)).values;
     let of = |steps| {
         let technique = camera(OcclusionCamera { steps, ..OcclusionCamera::default() });
         errors(&seen(&triangles, &light, &receivers, &technique).values, floats(&exact))
@@ -235,20 +243,24 @@ fn two_slats_side_by_side_have_two_penumbrae() {
 #[test]
 fn stairs_need_a_bias_and_it_is_reported() {
     // Steps that rise away from an edge above them: where the camera moves a receiver, the next step is nearer to the light.
-    let steps: Vec<Triangle> =
-        (0..8).flat_map(|i| cuboid([-0.4 + 0.1 * f64::from(i), -0.5, -0.2], [-0.3 + 0.1 * f64::from(i), 0.5, 0.02 * f64::from(i)])).collect();
+    let steps: Vec<Triangle> = (0..8)
+        .flat_map(|i| {
+            cuboid([-0.4 + 0.1 * f64::from(i), -0.5, -0.2], [-0.3 + 0.1 * f64::from(i), 0.5, 0.02 * f64::from(i)])
+        })
+        .collect();
     let edge = half_plane(0.0, 1.0, 0.8);
     let triangles: Vec<Triangle> = steps.into_iter().chain(edge).collect();
     let light = lamp(rectangle(0.4, 0.4), [0.0, 0.0, 2.0]);
     let on_steps: Vec<Point> = Random(16)
-        .points(4000, [-0.4, 0.4], [-0.3, 0.3], [0.0, 0.0])
+        .points(1500, [-0.4, 0.4], [-0.3, 0.3], [0.0, 0.0])
         .into_iter()
         .map(|[x, y, _]| [x, y, 0.02 * ((x + 0.4) * 10.0).floor()])
         .collect();
     let receivers = surface_points(on_steps, UP);
-    let exact = seen(&triangles, &light, &receivers, &ray_traced(1024)).values;
+    let exact = seen(&triangles, &light, &receivers, &ray_traced(256)).values;
     let of = |bias| {
-        let seen = seen(&triangles, &light, &receivers, &camera(OcclusionCamera { bias, ..OcclusionCamera::default() }));
+        let seen =
+            seen(&triangles, &light, &receivers, &camera(OcclusionCamera { bias, ..OcclusionCamera::default() }));
         (errors(&seen.values, floats(&exact)), seen.info.camera_bias)
     };
     let ((without, none), (with, used)) = (of(0.0), of(0.25));
@@ -263,18 +275,20 @@ fn stairs_need_a_bias_and_it_is_reported() {
 #[test]
 fn the_umbra_shrinks_as_the_light_grows() {
     let triangles: Vec<Triangle> = plate([-0.25, 0.25], [-0.25, 0.25], 1.0);
-    let receivers = surface_points(Random(17).points(4000, [-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]), UP);
+    let receivers = surface_points(Random(17).points(2000, [-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]), UP);
     let mut umbrae = Vec::new();
     for radius in [0.02, 0.1, 0.2, 0.3, 0.4] {
         let light = lamp(LightShape::Sphere { radius }, [0.0, 0.0, 2.0]);
-        let exact = seen(&triangles, &light, &receivers, &ray_traced(1024)).values;
+        let exact = seen(&triangles, &light, &receivers, &ray_traced(256)).values;
         let soft = seen(&triangles, &light, &receivers, &occlusion_camera(1024)).values;
         let hard = seen(&triangles, &light, &receivers, &hard_shadow_map(1024)).values;
         let umbra = |values: &[f32]| values.iter().filter(|v| **v < 0.002).count();
         let [error, without] = [&soft, &hard].map(|values| errors(values, floats(&exact)));
         println!(
             "radius {radius}: umbra of {} receivers, rays {}, hard {}; {error:.4?}, hard {without:.4?}",
-            umbra(&soft), umbra(&exact), umbra(&hard)
+            umbra(&soft),
+            umbra(&exact),
+            umbra(&hard)
         );
         assert!(error[1] < 0.5 * without[1], "{error:?} {without:?}");
         umbrae.push(umbra(&soft));

@@ -54,6 +54,17 @@ fn noisy(technique: &Technique) -> u64 {
     if spread(technique).0 == SampleSpread::Interleaved { 16 } else { 0 }
 }
 
+/// Views of a light's maps: one, or the faces of a cube for a light within the scene.
+fn views(request: &Request<'_>) -> u64 {
+    let inside = !matches!(request.light.shape(), LightShape::Sun { .. })
+        && request.light.local(&request.scene.local.frame).center.length() < 1.0;
+    match (request.scene.local.sub_scenes.is_empty(), inside) {
+        (true, _) => 0,
+        (false, true) => 6,
+        (false, false) => 1,
+    }
+}
+
 /// Bytes by label that a plan must have, and no other.
 fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64> {
     let mut bytes = BTreeMap::new();
@@ -137,17 +148,39 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
             }
         }
         Technique::HardShadowMap(settings) => {
-            // One view, or the faces of a cube for a light within the scene; the texture is always an array.
-            let inside = !matches!(request.light.shape(), LightShape::Sun { .. })
-                && request.light.local(&request.scene.local.frame).center.length() < 1.0;
-            let views = match (sub_scenes.is_empty(), inside) {
-                (true, _) => 0,
-                (false, true) => 6,
-                (false, false) => 1,
-            };
+            // The texture is always an array.
+            let views = views(request);
             add("depth map".into(), u64::from(settings.resolution).pow(2) * 4 * views.max(2));
             (0..views).for_each(|n| add(format!("shadow view {n}"), 64));
             add("shadow views".into(), 6 * 64 + 16);
+        }
+        Technique::OcclusionCamera(settings) => {
+            let [_, edges, sides] = hidden_by(request);
+            // Three ways or half sizes, and 64 corners of a polygon.
+            add("camera light".into(), 80 + 64 * 8);
+            add("shadow views".into(), 6 * 64 + 16);
+            if edges > 0 {
+                let (texels, views) = (u64::from(settings.resolution).pow(2), views(request));
+                add("depth map".into(), texels * 4 * views.max(2));
+                // Eight floats a texel, on either side of the hard shadow's border.
+                add("distortion map".into(), texels / 16 * 2 * 32 * views);
+                add("distance to silhouettes".into(), texels / 16 * 4);
+                for n in 0..views {
+                    add(format!("shadow view {n}"), 64);
+                    add(format!("map layer {n}"), 16);
+                }
+                add("edges".into(), edges * 32);
+                add("faces at edges".into(), sides * 32);
+                add("edge corners".into(), 16);
+                add("light silhouettes".into(), edges * 32);
+                add("silhouette corners".into(), 16);
+                add("camera counts".into(), 16);
+                if !(request.opens_block && camera) {
+                    for (n, sub_scene) in sub_scenes.iter().enumerate() {
+                        add(format!("corners {n}"), sub_scene.corners.len() as u64 / 3 * 48);
+                    }
+                }
+            }
         }
         Technique::DepthComplexity(settings) => {
             let ([faces, edges, sides], tiles) = (hidden_by(request), count.div_ceil(64));
@@ -390,7 +423,8 @@ fn what_passes_to_samples_is_sized_where_triangles_are_semi_opaque() {
             _ => 0,
         };
         assert_eq!(of(true) - of(false) + grown(2), grown(3) + area, "{technique:?}");
-        let samples = if technique.name() == "hard_shadow_map" { 0 } else { u64::from(technique.samples()) };
+        let knows_opaque_alone = ["hard_shadow_map", "occlusion_camera"].contains(&technique.name());
+        let samples = if knows_opaque_alone { 0 } else { u64::from(technique.samples()) };
         assert_eq!(of(true) - of(false), 4 * samples);
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use softshadow_plan::{Origin, Over, Plan, VertexSource, Work};
 use softshadow_scene::Camera;
 use softshadow_techniques::{
-    DepthComplexity, HardShadowMap, RayTraced, ReceiverSource, Request, Shading, Technique, Wants,
+    DepthComplexity, HardShadowMap, OcclusionCamera, RayTraced, ReceiverSource, Request, Shading, Technique, Wants,
 };
 
 use crate::requests::{Fixture, SIZE, stage, techniques};
@@ -89,6 +89,41 @@ fn the_plainest_hard_shadow_has_three_passes() {
     assert!(raster.colors.is_empty() && raster.depth.is_some());
     let within = technique.plan(&Request { light: &fixture.lights[1], ..request });
     assert_eq!(rasters(&within), 6, "a light within the scene looks six ways");
+}
+
+#[test]
+fn the_occlusion_camera_draws_maps_where_there_are_casters_alone() {
+    let fixture = Fixture::new();
+    let technique = Technique::OcclusionCamera(OcclusionCamera::default());
+    let request = fixture.request(1, fixture.points());
+    let plan = technique.plan(&request);
+    let expected = [
+        "place points",
+        "draw depth 0 0",
+        "no silhouettes",
+        "list silhouettes",
+        "draw distortion 0 outside",
+        "draw distortion 0 inside",
+        "no receivers",
+        "look up",
+    ];
+    assert_eq!(labels(&plan), expected);
+    assert_eq!(outputs(&plan), ["camera counts", "visibility", "receivers"]);
+    let within = technique.plan(&Request { light: &fixture.lights[1], ..request });
+    assert_eq!(rasters(&within), 6 * 3, "a light within the scene looks six ways");
+    let nothing = technique.plan(&fixture.request(0, fixture.points()));
+    assert_eq!(labels(&nothing), ["place points", "look up"]);
+    for label in ["depth map", "distortion map", "camera counts", "light silhouettes"] {
+        assert!(plan.find(label).is_some() && nothing.find(label).is_none(), "{label}");
+    }
+    // Two targets of four floats are all that GL promises of a sample.
+    for pass in &plan.passes {
+        if let Work::Raster(raster) = &pass.work {
+            let bytes =
+                raster.colors.iter().map(|c| plan.resources[c.texture.index()].shape.texel_bytes()).sum::<u64>();
+            assert!(bytes <= 32, "{}: {bytes}", pass.label);
+        }
+    }
 }
 
 #[test]
@@ -243,7 +278,7 @@ fn occluders_are_for_those_who_ask() {
         for receivers in [fixture.camera(), fixture.points()] {
             let with = fixture.request(1, receivers);
             let without = Request { occluders: None, ..with };
-            let asks = technique.name() == "depth_complexity";
+            let asks = ["depth_complexity", "occlusion_camera"].contains(&technique.name());
             assert_eq!(technique.wants_occluders(), asks);
             assert_eq!(stage(&technique, &with) != stage(&technique, &without), asks, "{}", technique.name());
         }

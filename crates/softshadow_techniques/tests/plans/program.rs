@@ -3,8 +3,8 @@
 use softshadow_plan::{Host, Program, Step, check};
 use softshadow_scene::{MAX_SAMPLES, Points, SceneError};
 use softshadow_techniques::{
-    DepthComplexity, RayTraced, ReceiverSource, Shading, StageTask, Technique, TechniqueError, VisibilityProgram,
-    Wants, blocks,
+    DepthComplexity, OcclusionCamera, RayTraced, ReceiverSource, Shading, StageTask, Technique, TechniqueError,
+    VisibilityProgram, Wants, blocks,
 };
 
 use crate::requests::Fixture;
@@ -127,6 +127,17 @@ fn a_program_that_cannot_run_says_so_before_it_starts() {
         let technique = Technique::HardShadowMap(softshadow_techniques::HardShadowMap { resolution });
         let words = program(&fixture, &technique).check().unwrap_err().to_string();
         assert_eq!(words, format!("hard_shadow_map resolution: must lie between 16 and 16384, got {resolution}"));
+    }
+    let bent = softshadow_techniques::OcclusionCamera::default;
+    for (settings, words) in [
+        (OcclusionCamera { resolution: 4097, ..bent() }, "resolution: must lie between 16 and 4096, got 4097"),
+        (OcclusionCamera { resolution: 18, ..bent() }, "resolution: must be a multiple of 4, got 18"),
+        (OcclusionCamera { steps: 4, ..bent() }, "steps: must lie between 1 and 3, got 4"),
+        (OcclusionCamera { steps: 0, ..bent() }, "steps: must lie between 1 and 3, got 0"),
+        (OcclusionCamera { bias: f32::NAN, ..bent() }, "bias: must lie between 0 and 1, got NaN"),
+    ] {
+        let technique = Technique::OcclusionCamera(settings);
+        assert_eq!(program(&fixture, &technique).check().unwrap_err().to_string(), format!("occlusion_camera {words}"));
     }
 }
 

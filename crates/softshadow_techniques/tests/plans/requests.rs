@@ -9,8 +9,8 @@ use softshadow_scene::{
 };
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
-    Attenuation, Block, DepthComplexity, HardShadowMap, OccluderContents, OcclusionCamera, Ramp, RayTraced, ReceiverSource,
-    Request, SceneContents, Shading, Technique, Wants,
+    Attenuation, Block, DepthComplexity, HardShadowMap, OccluderContents, OcclusionCamera, Ramp, RayTraced,
+    ReceiverSource, Request, SceneContents, Shading, Technique, Wants,
 };
 
 /// Width and height of the grid's images.
