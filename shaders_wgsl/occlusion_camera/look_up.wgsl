@@ -241,18 +241,22 @@ fn shadowed(receiver: Receiver, horizon: f32) -> f32 {
     var is_colliding = false;
     var bias = 0.0;
     let nearest = select(0u, 1u, part.x >= 0.5) + select(0u, 2u, part.y >= 0.5);
-    for (var i = 0u; i < 4u; i++) {
+    var answer: Answer;
+    // The nearest texel comes last, and its answer stays.
+    for (var turn = 0u; turn < 4u; turn++) {
+        let i = (3u - turn) ^ nearest;
         let step = vec2<f32>(f32(i & 1u), f32(i >> 1u));
         let weight = mix(1.0 - part, part, step);
-        let answer = answer_in(seen, receiver, floor(corner) + step);
+        answer = answer_in(seen, receiver, floor(corner) + step);
         // A silhouette that is turned as the horizon is hides what the horizon hides.
         let is_one = dot(upward, answer.normal) >= AGREEING * length(upward);
         sum += weight.x * weight.y * select(answer.share * horizon, min(answer.share, horizon), is_one);
         steps = max(steps, answer.steps);
         bias = max(bias, answer.bias);
-        if (i == nearest && answer.width > 0.0) {
-            is_colliding = collides(seen, answer);
-        }
+    }
+    // A loop of one step: software drivers run both sides of a branch, and skip a loop that no lane needs.
+    for (var k = 0u; k < select(0u, 1u, answer.width > 0.0); k++) {
+        is_colliding = collides(seen, answer);
     }
     if (steps > 0u) {
         atomicAdd(&counts.receivers, 1u);
