@@ -29,7 +29,7 @@
 //! half planes let a quarter through where nothing passes. An edge is taken to run across the light's view where it is
 //! nearest; silhouettes are those of the light's centre. Occluders within the bias of what is shaded leak at inner penumbrae; with too small
 //! a bias surfaces that rise towards the light are dark there (the paper's figure 9). Penumbrae narrower than a texel are hard.
-//! Penumbrae at corners sharper than 90 degrees are not filled. Semi-opaque triangles are taken for opaque, and every result says so. Refused: triangles that touch a sphere light, and
+//! Penumbrae at corners sharper than 90 degrees are not filled. Semi-opaque triangles are taken for opaque, and every result says so. Refused: GL, which draws into no float32 target; triangles that touch a sphere light, and
 //! polygons of more than 64 corners. A polygon is looked at from its local origin, which should lie within it.
 
 use serde::{Deserialize, Serialize};
