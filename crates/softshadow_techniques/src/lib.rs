@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Host, Plan, Values};
-use softshadow_scene::{Light, SampleSpread, SceneError};
+use softshadow_scene::{Light, LightSamples, LocalFrame, SampleSpread, SceneError};
 
 pub use block::{Block, blocks};
 pub use depth_complexity::{Attenuation, DepthComplexity};
@@ -149,6 +149,19 @@ impl Technique {
             Self::DepthComplexity(settings) => settings.check_occluders(occluders),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
+    }
+
+    /// Checks whether a light's samples can be made.
+    ///
+    /// # Errors
+    /// [`TechniqueError::Scene`] says why not.
+    pub fn check_light(&self, light: &Light, frame: &LocalFrame) -> Result<(), TechniqueError> {
+        let sampling = match self {
+            Self::RayTraced(settings) => settings.sampling(0),
+            Self::DepthComplexity(settings) => settings.sampling(0),
+            Self::HardShadowMap(_) => return Ok(()),
+        };
+        Ok(LightSamples::new(light, frame, &sampling).map(drop)?)
     }
 
     /// Whether pixels are averaged with their neighbours.
