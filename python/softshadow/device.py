@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
+import tempfile
 import threading
 import warnings
 from typing import Any, Literal
 
-from . import _core
+from . import _core, logs
 from .errors import SettingsError, SoftwareAdapterWarning
 
 Device = Literal["auto", "gpu", "native", "software"] | int
@@ -26,6 +28,7 @@ def context(device: Device | str) -> _core.Context:
     with _locks.setdefault(os.getpid(), threading.Lock()):
         if key not in _contexts:
             _contexts[key] = _core.Context(name)
+            logs.device_chosen(name, json.loads(_contexts[key].adapter))
         return _contexts[key]
 
 
@@ -40,8 +43,10 @@ def announce(device: Device | str, adapter: dict[str, Any]) -> None:
 
 
 def quiet_driver() -> None:
-    """For the library's own programs: Mesa's device-selection layer complains where there is no desktop session."""
+    """For the library's own programs: drivers complain on stderr where there is no desktop session."""
     os.environ.setdefault("VK_LOADER_LAYERS_DISABLE", "VK_LAYER_MESA_device_select")
+    # Wayland looks here for a desktop, and finds none.
+    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
 
 
 def _name(device: object) -> str:
