@@ -44,7 +44,7 @@ demo: extension
 	$(BIN)/python -m softshadow.demo --output demo
 
 gallery: setup
-	$(BIN)/python -m softshadow.gallery --output demo/gallery
+	$(BIN)/softshadow gallery --output demo/gallery
 
 test: setup test-rust test-python
 

@@ -97,6 +97,7 @@ def described(adapter: dict[str, Any]) -> dict[str, Any]:
     version = re.search(r"\bMesa (\d+\.\d+(?:\.\d+)?)", adapter["driver"])
     mesa = version and version[1]
     is_software, is_llvmpipe = adapter["device_type"] == "software", "llvmpipe" in adapter["name"].lower()
+    binding = adapter["storage_binding_bytes"]
     remarks = [
         (is_software, "slow: a driver that computes on the processor; device='native' does so without a driver"),
         (
@@ -114,9 +115,9 @@ def described(adapter: dict[str, Any]) -> dict[str, Any]:
             "does not blend float32: DepthComplexity(counters='float') is refused; 'words' gives the same samples",
         ),
         (
-            adapter["storage_binding_bytes"] <= _SMALL_BINDING,
-            f"small storage bindings ({adapter['storage_binding_bytes'] >> 20} MiB): scenes with more bytes of triangles "
-            "are traced in parts, and receivers come in more blocks",
+            binding <= _SMALL_BINDING,
+            f"small storage bindings ({binding >> 20} MiB): scenes with more bytes of triangles are traced in parts, "
+            "and receivers come in more blocks",
         ),
         (adapter["backend"] == "gl", "slow to open, and taken only where nothing else answers or by its index"),
     ]

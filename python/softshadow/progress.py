@@ -47,7 +47,7 @@ def _told(progress: Progress, call: str, running: Callable[[int], object]) -> Re
 @contextmanager
 def _bar(call: str) -> Iterator[Report]:
     """A bar of tqdm's on stderr, plain text in notebooks too."""
-    with needed("progress", "progress=True").tqdm(desc=call, unit="block", leave=False) as bar:
+    with needed("progress", "progress=True").tqdm(desc=call, unit="block") as bar:
 
         def report(done: int, total: int) -> None:
             bar.total = total

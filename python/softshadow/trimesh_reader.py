@@ -34,7 +34,7 @@ def read(source: object) -> tuple[list[Mesh], list[str]]:
 
 
 def camera(source: object) -> tuple[Any, NDArray[np.float64]] | None:
-    """A scene's camera and its pose, where it was given one: `camera` itself would make one, `lights` would add some."""
+    """A scene's camera and its pose, where it was given one; asking a scene without one would make one."""
     if not isinstance(source, trimesh.Scene) or not source.has_camera:
         return None
     name = source.camera.name

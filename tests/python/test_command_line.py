@@ -123,6 +123,8 @@ def test_several_lights_are_added_in_a_picture(tmp_path, mesh_file):
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:evaluation=blended,base=9"], "64 or 256"),
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:unit=leaves"], "triangles"),
         (["render", "hall", "-o", "a.png", "--device", "toaster"], "toaster"),
+        (["gallery", "mona-lisa"], "unknown exhibit 'mona-lisa'; there are silhouettes"),
+        (["gallery", "areas", "--size", "4"], "1024x768"),
         ([], "required"),
     ],
 )
@@ -150,6 +152,34 @@ def test_no_device_ends_with_one(capsys, tmp_path):
     out = tmp_path / "a.png"
     assert main(["render", "hall", "-o", str(out), "--size", "8x8", "--device", "999"]) == 1
     assert "999" in capsys.readouterr().err
+
+
+def test_the_gallery_is_a_command(tmp_path):
+    out = tmp_path / "gallery"
+    done = run("gallery", "areas", "glass", "-o", out, "--size", "48x36", "--device", "software", "--json")
+    assert done.returncode == 0, done.stderr
+    made = json.loads(done.stdout)
+    assert list(made["exhibits"]) == ["areas", "glass"]
+    assert made["exhibits"]["areas"]["areas"]["rmse"] < made["exhibits"]["areas"]["samples"]["rmse"]
+    assert made["page"] == str(out / "index.md")
+    page = (out / "index.md").read_text()
+    pictures = sorted(path.name for path in out.glob("*.png"))
+    assert len(pictures) > 6
+    assert all(f"({name})" in page for name in pictures)
+    assert read_png(out / "areas_areas.png").shape == (36, 48, 3)
+    said = done.stderr.splitlines()
+    assert [line.split(",")[0] for line in said] == ["areas", "glass", f"page {out / 'index.md'}"]
+
+
+def test_progress_is_shown_on_a_terminal_alone(tmp_path, monkeypatch, capsys):
+    arguments = ["visibility", "hall", "-o", str(tmp_path / "a.npy"), *SMALL]
+    assert main(arguments) == 0
+    assert "1 of 1" not in capsys.readouterr().err
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert main(arguments) == 0
+    said = capsys.readouterr()
+    assert "1 of 1" in said.err
+    assert said.out == ""
 
 
 def test_doctor(capsys):
