@@ -63,6 +63,11 @@ class Picture:
         ``.exr``
             Channels `R`, `G`, `B` of linear float32; `info` as JSON text in the attribute `softshadow`.
 
+        Parameters
+        ----------
+        path : path
+            Where to; the case of its extension does not matter.
+
         Raises
         ------
         SettingsError

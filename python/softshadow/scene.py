@@ -93,6 +93,8 @@ class Scene:
     ----------
     meshes : iterable of Mesh
         Triangle ids count through them in order.
+    notes : iterable of str
+        What a source held that is left out: :attr:`notes`, which every result repeats.
 
     Raises
     ------
@@ -117,6 +119,11 @@ class Scene:
 
         What is left out is listed in :attr:`notes`. Lights and camera of a ``scene.json`` come with
         :func:`softshadow.load`.
+
+        Parameters
+        ----------
+        path : path
+            The file; its extension, in any case, decides the format.
 
         Raises
         ------

@@ -36,7 +36,7 @@ class Visibility:
     valid : bool, (H, W) or (points,)
         False only where the camera sees nothing.
     standard_error : float32 like `values`, or None
-        Of the mean over the samples; None where the technique has none or it was not asked for.
+        Of the mean over the samples, as a share; None where the technique has none or it was not asked for.
     positions : float64, (H, W, 3) or (points, 3), or None
         World coordinates of the receivers as they were used.
     normals : float32, (H, W, 3) or (points, 3), or None
@@ -85,6 +85,11 @@ class Visibility:
         Visibility is called ``visibility`` for a light without a name, else ``visibility.NAME``, and ends in ``.R``,
         ``.G``, ``.B`` where it is coloured; standard errors likewise. OpenEXR knows printable ASCII only: other letters
         of a name become ``_``.
+
+        Parameters
+        ----------
+        path : path
+            Where to; the case of its extension does not matter.
 
         Raises
         ------
