@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 # Mesa's device-selection layer complains on stderr where there is no desktop session; the library chooses the device itself.
 export VK_LOADER_LAYERS_DISABLE := VK_LAYER_MESA_device_select
 
-.PHONY: help setup driver venv extension demo gallery test test-rust test-python lint docs bench evidence clean
+.PHONY: help setup driver venv tools extension demo gallery test test-rust test-python lint docs bench evidence clean
 
 help:
 	@echo "make demo      render the demonstration scene; says where the picture and the numbers are"
@@ -35,7 +35,14 @@ venv: $(VENV)/.made
 $(VENV)/.made: pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet "maturin>=1.9.4,<2" numpy trimesh matplotlib tqdm pytest ruff mypy pillow
+	$(BIN)/python -m pip install --quiet "maturin>=1.9.4,<2" numpy
+	touch $@
+
+# What tests and checks need besides.
+tools: $(VENV)/.tools
+
+$(VENV)/.tools: $(VENV)/.made
+	$(BIN)/python -m pip install --quiet trimesh matplotlib tqdm pytest ruff mypy pillow
 	touch $@
 
 extension: venv
@@ -54,10 +61,10 @@ test-rust:
 	SOFTSHADOW_DEVICE=software cargo test --release --workspace --quiet
 	cargo test --release --package softshadow --test truth --quiet
 
-test-python: extension
+test-python: extension tools
 	$(BIN)/python -m pytest -q
 
-lint: extension
+lint: extension tools
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets --quiet -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --quiet
@@ -78,7 +85,7 @@ bench:
 	target/release/softshadow-bench --ratios
 
 # Other renderers are large; they are wanted only here.
-evidence: setup
+evidence: setup tools
 	@if ! ldconfig -p | grep -q libusb-1.0; then \
 	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); $$sudo apt-get install -y -qq libusb-1.0-0 libgomp1 libx11-6; fi
 	$(BIN)/python -m pip install --quiet open3d mitsuba embreex
