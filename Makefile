@@ -46,7 +46,8 @@ $(VENV)/.tools: $(VENV)/.made
 	touch $@
 
 extension: venv
-	$(BIN)/maturin develop --release --quiet
+	@test -d target/release || echo "compiling Rust: some minutes, this time"
+	PIP_QUIET=1 $(BIN)/maturin develop --release --quiet
 
 demo: extension
 	$(BIN)/python -m softshadow.demo --output demo

@@ -20,8 +20,8 @@ def needed(extra: str, what: str, module: str | None = None) -> Any:
     except ModuleNotFoundError as error:
         if error.name is None or error.name.partition(".")[0] != package:
             raise
-        install = f'python -m pip install "softshadow[{extra}]"'
-        raise MissingExtra(f"{what}: needs {package}, which the extra [{extra}] installs: `{install}`") from None
+        install = f"`python -m pip install {package}`"
+        raise MissingExtra(f"{what}: needs {package}: {install}, or softshadow with its extra [{extra}]") from None
 
 
 def installed() -> dict[str, bool]:

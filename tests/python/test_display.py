@@ -169,8 +169,8 @@ except ss.MissingExtra as error:
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout.startswith("True ")
-    assert f'`python -m pip install "softshadow[{extra}]"`' in done.stdout
-    assert package in done.stdout
+    assert f"`python -m pip install {package}`" in done.stdout
+    assert f"[{extra}]" in done.stdout
 
 
 def test_a_broken_package_is_not_called_missing(tmp_path):
