@@ -25,7 +25,9 @@ def blocks(language: str) -> list[str]:
 
 
 def typed(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "SOFTSHADOW_DEVICE": "native"}
+    """As in a shell without a desktop, and without what developers set."""
+    dropped = ("SOFTSHADOW_DEVICE", "VK_LOADER_LAYERS_DISABLE", "XDG_RUNTIME_DIR")
+    environment = {name: value for name, value in os.environ.items() if name not in dropped}
     return subprocess.run(
         command, cwd=folder, capture_output=True, text=True, timeout=120, check=False, env=environment
     )
@@ -40,7 +42,7 @@ def test_the_eight_lines_run_as_they_stand(tmp_path):
     mean, milliseconds, error = map(float, done.stdout.split())
     assert 0.5 < mean < 1
     assert milliseconds > 0
-    assert 0 < error < 0.05
+    assert 0 < error < 0.1
     assert sorted(path.name for path in tmp_path.iterdir()) == ["picture.png", "visibility.png"]
     assert read_png(tmp_path / "visibility.png").shape == (512, 512)
     assert len(np.unique(read_png(tmp_path / "picture.png"))) > 100
@@ -53,6 +55,7 @@ def test_the_commands_run_as_they_stand(tmp_path):
         command = shlex.split(line)
         done = typed([sys.executable, "-m", *command], tmp_path)
         assert done.returncode == 0, done.stderr
+        assert "error" not in done.stderr
         written = [command[at + 1] for at, word in enumerate(command) if word == "-o"]
         assert all((tmp_path / name).stat().st_size > 0 for name in written)
         assert bool(done.stdout) == ("--json" in command or "doctor" in command)
