@@ -127,7 +127,7 @@ def _gallery(options: argparse.Namespace) -> int:
     made = make(Path(options.output), options.exhibits, studio, _say_exhibit)
     if options.json:
         print(json.dumps(made, indent=2))
-    _say(f"page {made['page']}")
+    _say(f"page {made['page']}, on {made['device']}")
     return 0
 
 
