@@ -15,7 +15,7 @@ from .checks import whole
 from .device import Device, context
 from .errors import SceneError, SettingsError
 from .lights import Light
-from .progress import Progress, reported
+from .progress import Progress, callback
 from .scene import Scene
 from .techniques import RayTraced, Technique, technique_json
 from .visibility import receivers_of, scene_of
@@ -92,23 +92,21 @@ def compare(
     if not isinstance(techniques, (list, tuple)) or not techniques:
         raise SettingsError(f"techniques: a list of at least one technique expected, got {techniques!r:.80}")
     where = receivers_of(camera, points, normals)
-    times = whole("repeats", repeats, low=1)
 
     def running(done: int) -> Technique:
         """The core's order: the reference, every technique once to warm up, then all of them in turn."""
         return techniques[(done - 1) % len(techniques)] if done else reference
 
-    with reported(progress, "compare", running) as report:
-        text = _core.compare(
-            context(device),
-            scene_of(scene),
-            light._built(),
-            **where.arguments,
-            techniques=[technique_json(f"techniques[{i}]", technique) for i, technique in enumerate(techniques)],
-            reference=technique_json("reference", reference),
-            repeats=times,
-            progress=report,
-        )
+    text = _core.compare(
+        context(device),
+        scene_of(scene),
+        light._built(),
+        **where.arguments,
+        techniques=[technique_json(f"techniques[{i}]", technique) for i, technique in enumerate(techniques)],
+        reference=technique_json("reference", reference),
+        repeats=whole("repeats", repeats, low=1),
+        progress=callback(progress, "compare", running),
+    )
     return Comparison(**json.loads(text))
 
 

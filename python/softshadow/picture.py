@@ -18,7 +18,7 @@ from .device import Device, announce, context
 from .errors import SettingsError
 from .files import output_format, write, write_csv, write_npz
 from .lights import Light, built_lights
-from .progress import Progress, reported
+from .progress import Progress, callback
 from .result_files import arrays_of, names_of, places_of, rgb
 from .scene import Scene
 from .techniques import RayTraced, Technique, technique_json
@@ -168,19 +168,18 @@ def render(
     stops = real("exposure", exposure, SettingsError)
     if not np.isfinite(stops):
         raise SettingsError(f"exposure: must be finite, got {exposure}")
-    with reported(progress, "render", lambda _: technique) as report:
-        arrays = _core.render(
-            context(device),
-            scene_of(scene),
-            built,
-            camera=where.arguments["camera"],
-            technique=technique_json("technique", technique),
-            shading=choice("shading", shading, ("integrated", "modulated")),
-            exposure=stops,
-            background=None if background is None else color("background", background),
-            memory_limit=memory_limit_bytes(memory_limit),
-            progress=report,
-        )
+    arrays = _core.render(
+        context(device),
+        scene_of(scene),
+        built,
+        camera=where.arguments["camera"],
+        technique=technique_json("technique", technique),
+        shading=choice("shading", shading, ("integrated", "modulated")),
+        exposure=stops,
+        background=None if background is None else color("background", background),
+        memory_limit=memory_limit_bytes(memory_limit),
+        progress=callback(progress, "render", lambda _: technique),
+    )
     names = names_of(lights if isinstance(lights, Sequence) else [lights])
     seen = shaped(arrays["visibility"], (len(built),) if several else (), where.shape, names)
     announce(device, seen.info["adapter"])

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 from .errors import SettingsError
@@ -18,18 +17,15 @@ Progress = Callable[[int, int, dict[str, Any]], object]
 Report = Callable[[int, int], object]
 
 
-@contextmanager
-def reported(progress: Progress | bool | None, call: str, running: Callable[[int], object]) -> Iterator[Report | None]:
+def callback(progress: Progress | bool | None, call: str, running: Callable[[int], object]) -> Report | None:
     """What the core calls with ``(done, total)``; `running` is the technique that runs when so much is done."""
+    if progress is None or progress is False:
+        return None
     if progress is True:
-        with _bar(call) as bar:
-            yield bar
-    elif progress is None or progress is False:
-        yield None
-    elif callable(progress):
-        yield _told(progress, call, running)
-    else:
-        raise SettingsError(f"progress: True or a callable (done, total, info) expected, got {progress!r:.80}")
+        return _bar(call)
+    if callable(progress):
+        return _told(progress, call, running)
+    raise SettingsError(f"progress: True or a callable (done, total, info) expected, got {progress!r:.80}")
 
 
 def _told(progress: Progress, call: str, running: Callable[[int], object]) -> Report:
@@ -44,13 +40,14 @@ def _told(progress: Progress, call: str, running: Callable[[int], object]) -> Re
     return report
 
 
-@contextmanager
-def _bar(call: str) -> Iterator[Report]:
-    """A bar of tqdm's on stderr, plain text in notebooks too."""
-    with needed("progress", "progress=True").tqdm(desc=call, unit="block") as bar:
+def _bar(call: str) -> Report:
+    """A bar of tqdm's on stderr, plain text in notebooks too. One that is left behind by an error closes itself."""
+    bar = needed("progress", "progress=True").tqdm(desc=call, unit="block")
 
-        def report(done: int, total: int) -> None:
-            bar.total = total
-            bar.update(done - bar.n)
+    def report(done: int, total: int) -> None:
+        bar.total = total
+        bar.update(done - bar.n)
+        if done == total:
+            bar.close()
 
-        yield report
+    return report

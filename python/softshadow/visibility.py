@@ -18,7 +18,7 @@ from .device import Device, announce, context
 from .errors import SceneError, SettingsError
 from .files import output_format, write, write_csv, write_npz
 from .lights import Light, built_lights
-from .progress import Progress, reported
+from .progress import Progress, callback
 from .result_files import arrays_of, channels_of, columns_of, names_of
 from .scene import Scene
 from .techniques import DepthComplexity, RayTraced, Technique, technique_json
@@ -231,19 +231,18 @@ def visibility(
     if sample_masks and not decides_all:
         raise SettingsError("sample_masks: only RayTraced without probes and DepthComplexity decide every sample")
     given, names = where.points, names_of(lights if isinstance(lights, Sequence) else [lights])
-    with reported(progress, "visibility", lambda _: technique) as report:
-        arrays = _core.visibility(
-            context(device),
-            scene_of(scene),
-            built,
-            **where.arguments,
-            technique=technique_json("technique", technique),
-            memory_limit=memory_limit_bytes(memory_limit),
-            standard_error=bool(standard_error),
-            receivers=bool(receivers),
-            sample_masks=bool(sample_masks),
-            progress=report,
-        )
+    arrays = _core.visibility(
+        context(device),
+        scene_of(scene),
+        built,
+        **where.arguments,
+        technique=technique_json("technique", technique),
+        memory_limit=memory_limit_bytes(memory_limit),
+        standard_error=bool(standard_error),
+        receivers=bool(receivers),
+        sample_masks=bool(sample_masks),
+        progress=callback(progress, "visibility", lambda _: technique),
+    )
     result = shaped(arrays, (len(built),) if several else (), where.shape, names, given)
     announce(device, result.info["adapter"])
     logs.call_done("visibility", result.info)

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import softshadow as ss
-from conftest import camera_above, light_above, read_png, render, visibility
+from conftest import camera_above, compare, light_above, read_png, render, visibility
 from softshadow import logs
 
 mpl.use("agg")
@@ -143,6 +143,10 @@ def test_a_bar_is_shown_on_stderr(scene, capsys):
     done, total = re.search(r"visibility: 100%.* (\d+)/(\d+) ", said.err).groups()
     assert done == total
     assert int(total) > 2
+    compare(scene, light_above(), camera=camera_above(), techniques=[ss.RayTraced()], repeats=1, progress=True)
+    assert re.search(r"compare: 100%.* 3/3 ", capsys.readouterr().err)
+    with pytest.raises(ss.SettingsError, match="exposure"):
+        render(scene, light_above(), camera=camera_above(), progress=True, exposure=np.inf)
     visibility(scene, light_above(), progress=False, **settings)
     assert capsys.readouterr().err == ""
 

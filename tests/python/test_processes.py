@@ -126,6 +126,7 @@ def test_a_comparison_says_which_technique_is_at_work(scene):
     assert {call for *_, call, _ in seen} == {"compare"}
     names = {done: name for done, *_, name in seen}
     rays, hard = "ray_traced", "hard_shadow_map"
+    assert max(names) == 7, "the end is told, too"
     assert [names[done] for done in range(7)] == ["depth_complexity", rays, hard, rays, hard, rays, hard]
 
 
