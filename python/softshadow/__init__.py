@@ -21,6 +21,7 @@ from .errors import (
     GpuOutOfMemory,
     Interrupted,
     MeasureError,
+    MissingExtra,
     NoAdapterError,
     OutputError,
     SceneError,
@@ -34,7 +35,7 @@ from .light_samples import LightPoints, light_points
 from .lights import DiscLight, Light, PolygonLight, RectLight, SphereLight, SunLight
 from .picture import Picture, render
 from .scene import Mesh, Scene
-from .scene_file import SceneFile, load
+from .scene_file import SceneFile, from_trimesh, load
 from .techniques import DepthComplexity, HardShadowMap, RayTraced, Technique
 from .visibility import Visibility, visibility
 
@@ -52,6 +53,7 @@ __all__ = [
     "LightPoints",
     "MeasureError",
     "Mesh",
+    "MissingExtra",
     "NoAdapterError",
     "OutputError",
     "Picture",
@@ -73,6 +75,7 @@ __all__ = [
     "__version__",
     "compare",
     "doctor",
+    "from_trimesh",
     "light_points",
     "load",
     "look_at",

@@ -101,7 +101,22 @@ class Camera(ByValue):
         fov_y_deg: float,
         size: tuple[int, int],
     ) -> Camera:
-        """A camera at `eye` that looks at `target`; see :func:`softshadow.look_at`."""
+        """A camera at `eye` that looks at `target`.
+
+        Parameters
+        ----------
+        eye, target, up
+            As in :func:`softshadow.look_at`.
+        fov_y_deg : float
+            Vertical field of view in degrees.
+        size : (width, height)
+            In pixels.
+
+        Raises
+        ------
+        SceneError, SettingsError
+            As :func:`softshadow.look_at`, and for angles and sizes that have no meaning.
+        """
         try:
             pose = look_at(eye, target, up)
         except SceneError as error:
@@ -118,6 +133,11 @@ class Camera(ByValue):
             Read, never changed.
         transform : (4, 4) float
             ``scene.camera_transform``, or what ``camera.look_at`` returns: the pose, against its docstring.
+
+        Raises
+        ------
+        SceneError, SettingsError
+            For a transform that is no pose, and a resolution that has no meaning.
         """
         # Its resolution is (width, height), against its docstring. K is left alone: its setter changes it.
         # Asking a copy keeps what trimesh works out and caches off the caller's camera.

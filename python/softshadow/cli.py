@@ -1,4 +1,4 @@
-"""The command line: ``softshadow render``, ``softshadow visibility`` and ``softshadow doctor``."""
+"""The command line: ``softshadow render``, ``visibility``, ``gallery`` and ``doctor``."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from .diagnosis import doctor
 from .errors import SceneError, SettingsError, SoftShadowError, TooLargeError
 from .files import FORMATS, output_format
 from .framing import framed, lit_from_above
+from .gallery import EXHIBITS, Exhibit, Studio, make
 from .picture import Picture, render
 from .scene_file import load
 from .visibility import Visibility, visibility
@@ -81,6 +82,14 @@ def _parser() -> argparse.ArgumentParser:
         )
         command.set_defaults(run=run)
         _add_common(command)
+    gallery_command = commands.add_parser("gallery", help="make pictures side by side of what the techniques do")
+    gallery_command.add_argument(
+        "exhibits", nargs="*", metavar="EXHIBIT", help=f"default: all of {', '.join(EXHIBITS)}"
+    )
+    gallery_command.add_argument("-o", "--output", default="gallery", metavar="FOLDER", help="default: %(default)s")
+    gallery_command.add_argument("--size", type=parse_size, default=Studio.size, metavar="WxH", help="of a picture")
+    _add_device_and_json(gallery_command)
+    gallery_command.set_defaults(run=_gallery)
     doctor_command = commands.add_parser("doctor", help="show adapters and what is missing")
     doctor_command.add_argument("--json", action="store_true", help="print JSON")
     doctor_command.set_defaults(run=_doctor)
@@ -94,8 +103,12 @@ def _add_common(command: argparse.ArgumentParser) -> None:
     command.add_argument("--camera", type=parse_camera, help="default: the scene's own, or all of it in view")
     command.add_argument("--size", type=parse_size, metavar="WxH", help="pixels; default: the camera's own")
     command.add_argument("--technique", type=parse_technique, default="ray-traced", help="name and settings")
-    command.add_argument("--device", default="auto", help="auto, gpu, native, software, or an index of doctor's")
     command.add_argument("--info", metavar="FILE", help="write what made the result, as JSON")
+    _add_device_and_json(command)
+
+
+def _add_device_and_json(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--device", default="auto", help="auto, gpu, native, software, or an index of doctor's")
     command.add_argument("--json", action="store_true", help="print what made the result, as JSON")
 
 
@@ -105,6 +118,17 @@ def _render(options: argparse.Namespace) -> int:
 
 def _visibility(options: argparse.Namespace) -> int:
     return _make(options, visibility)
+
+
+def _gallery(options: argparse.Namespace) -> int:
+    if unknown := [name for name in options.exhibits if name not in EXHIBITS]:
+        raise SettingsError(f"unknown exhibit {unknown[0]!r}; there are {', '.join(EXHIBITS)}")
+    studio = Studio(size=options.size, device=options.device)
+    made = make(Path(options.output), options.exhibits, studio, _say_exhibit)
+    if options.json:
+        print(json.dumps(made, indent=2))
+    _say(f"page {made['page']}, on {made['device']}")
+    return 0
 
 
 def _doctor(options: argparse.Namespace) -> int:
@@ -170,7 +194,12 @@ def _say(text: str) -> None:
     print(text, file=sys.stderr)
 
 
-def _say_progress(done: int, total: int) -> None:
+def _say_exhibit(exhibit: Exhibit, seconds: float) -> None:
+    measured = "; ".join(f"{panel.name}: {panel.numbers}" for panel in exhibit.panels if panel.numbers)
+    _say(f"{exhibit.name}, {seconds:.1f} s: {measured}")
+
+
+def _say_progress(done: int, total: int, _: object) -> None:
     if sys.stderr.isatty():
         print(f"\r{done} of {total}", end="\n" if done == total else "", file=sys.stderr, flush=True)
 

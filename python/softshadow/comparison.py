@@ -15,9 +15,10 @@ from .checks import whole
 from .device import Device, context
 from .errors import SceneError, SettingsError
 from .lights import Light
+from .progress import Progress, callback
 from .scene import Scene
 from .techniques import RayTraced, Technique, technique_json
-from .visibility import Progress, callback, receivers_of, scene_of
+from .visibility import receivers_of, scene_of
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -62,7 +63,7 @@ def compare(
     reference: Technique = RayTraced(samples=4096),  # noqa: B008 - frozen
     repeats: int = 3,
     device: Device | str = "auto",
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Comparison:
     """Error and time of techniques on the same receivers.
 
@@ -83,7 +84,7 @@ def compare(
 
     Raises
     ------
-    SceneError, SettingsError, TooLargeError, NoAdapterError, GpuError, Interrupted
+    SceneError, SettingsError, TooLargeError, NoAdapterError, GpuError, Interrupted, MissingExtra
         As :func:`visibility`.
     """
     if not isinstance(light, Light):
@@ -91,6 +92,11 @@ def compare(
     if not isinstance(techniques, (list, tuple)) or not techniques:
         raise SettingsError(f"techniques: a list of at least one technique expected, got {techniques!r:.80}")
     where = receivers_of(camera, points, normals)
+
+    def running(done: int) -> Technique:
+        """The core's order: the reference, every technique once to warm up, then all of them in turn."""
+        return techniques[(done - 1) % len(techniques)] if done else reference
+
     text = _core.compare(
         context(device),
         scene_of(scene),
@@ -99,7 +105,7 @@ def compare(
         techniques=[technique_json(f"techniques[{i}]", technique) for i, technique in enumerate(techniques)],
         reference=technique_json("reference", reference),
         repeats=whole("repeats", repeats, low=1),
-        progress=callback(progress),
+        progress=callback(progress, "compare", running),
     )
     return Comparison(**json.loads(text))
 

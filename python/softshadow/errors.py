@@ -33,6 +33,10 @@ class GpuOutOfMemory(GpuError, MemoryError):
     """The device has too little memory; a smaller ``memory_limit`` makes smaller blocks."""
 
 
+class MissingExtra(SoftShadowError, ImportError):
+    """A call needs a package that is not installed; the message has the command that installs it."""
+
+
 class MeasureError(SoftShadowError, ValueError):
     """Results that cannot be compared."""
 
@@ -46,4 +50,4 @@ class OutputError(SoftShadowError, OSError):
 
 
 class SoftwareAdapterWarning(UserWarning):
-    """``device="auto"`` found no graphics card and took a software adapter, which is much slower."""
+    """``device="auto"`` found no graphics card to draw triangles and took a software adapter, which is much slower."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib import import_module
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from . import _core
 from .by_value import ByValue, set_fields
 from .checks import color, floats, frozen, integers, real, vector
 from .errors import SceneError
+from .extras import needed
 
 if TYPE_CHECKING:
     import trimesh
@@ -91,6 +93,8 @@ class Scene:
     ----------
     meshes : iterable of Mesh
         Triangle ids count through them in order.
+    notes : iterable of str
+        What a source held that is left out: :attr:`notes`, which every result repeats.
 
     Raises
     ------
@@ -115,6 +119,11 @@ class Scene:
 
         What is left out is listed in :attr:`notes`. Lights and camera of a ``scene.json`` come with
         :func:`softshadow.load`.
+
+        Parameters
+        ----------
+        path : path
+            The file; its extension, in any case, decides the format.
 
         Raises
         ------
@@ -172,16 +181,21 @@ class Scene:
 
         Every instance in a scene's graph becomes a mesh of its own, with its transform and its node's name.
         Base colours are taken where one material or one colour covers a mesh; what is left out is listed in
-        :attr:`notes`.
+        :attr:`notes`. A scene's camera comes with :func:`softshadow.from_trimesh`.
+
+        Parameters
+        ----------
+        source : trimesh.Trimesh or trimesh.Scene
+            Coordinates are taken as they are.
 
         Raises
         ------
         SceneError
             For anything but a ``Trimesh`` or a ``trimesh.Scene``, and as :meth:`from_arrays`.
+        MissingExtra
+            Where trimesh is not installed.
         """
-        from .trimesh_reader import read
-
-        meshes, notes = read(source)
+        meshes, notes = trimesh_reader().read(source)
         return cls(meshes, notes=notes)
 
     def with_vertices(self, vertices: Iterable[ArrayLike | None]) -> Scene:
@@ -249,6 +263,12 @@ class Scene:
 
     def __repr__(self) -> str:
         return f"<Scene: {len(self.meshes)} meshes, {self.triangle_count} triangles>"
+
+
+def trimesh_reader() -> Any:
+    """The module that reads trimesh objects; it is imported when it is used."""
+    needed("trimesh", "from_trimesh")
+    return import_module("softshadow.trimesh_reader")
 
 
 def path_name(path: object) -> str:

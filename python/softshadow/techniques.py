@@ -47,6 +47,9 @@ class Technique:
 class RayTraced(Technique):
     """Shadow rays to samples of the light: unbiased, with a standard error.
 
+    The hidden share of an area light as in Cook, Porter and Carpenter 1984; interleaved samples as in Keller and
+    Heidrich 2001.
+
     Parameters
     ----------
     samples : int

@@ -4,26 +4,24 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
+from . import _core, logs, notebook, plots
 from .camera import Camera
 from .checks import floats, memory_limit_bytes
 from .device import Device, announce, context
 from .errors import SceneError, SettingsError
 from .files import output_format, write, write_csv, write_npz
 from .lights import Light, built_lights
+from .progress import Progress, callback
 from .result_files import arrays_of, channels_of, columns_of, names_of
 from .scene import Scene
 from .techniques import DepthComplexity, RayTraced, Technique, technique_json
-
-Progress = Callable[[int, int], object]
-"""Called with ``(done, total)`` between blocks; returning ``False`` stops the work with ``Interrupted``."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -38,7 +36,7 @@ class Visibility:
     valid : bool, (H, W) or (points,)
         False only where the camera sees nothing.
     standard_error : float32 like `values`, or None
-        Of the mean over the samples; None where the technique has none or it was not asked for.
+        Of the mean over the samples, as a share; None where the technique has none or it was not asked for.
     positions : float64, (H, W, 3) or (points, 3), or None
         World coordinates of the receivers as they were used.
     normals : float32, (H, W, 3) or (points, 3), or None
@@ -88,6 +86,11 @@ class Visibility:
         ``.G``, ``.B`` where it is coloured; standard errors likewise. OpenEXR knows printable ASCII only: other letters
         of a name become ``_``.
 
+        Parameters
+        ----------
+        path : path
+            Where to; the case of its extension does not matter.
+
         Raises
         ------
         SettingsError
@@ -126,6 +129,32 @@ class Visibility:
         height, width = self.values.shape
         return _core.png_grey16(self.values.ravel(), (width, height))
 
+    def _repr_html_(self) -> str:
+        return notebook.page(self._repr_png_(), self.values.shape, self.info)
+
+    def plot(self, *, axes: Any = None) -> Any:
+        """Draws the values with matplotlib, which the extra ``[plot]`` installs.
+
+        Images are shown in linear grey, or in their colours; points as seen along the axis in which they spread least.
+
+        Parameters
+        ----------
+        axes : matplotlib Axes, optional
+            Where to draw, for a result of one light; else a figure is made.
+
+        Returns
+        -------
+        matplotlib Axes, or for several lights an array of them, one each
+
+        Raises
+        ------
+        MissingExtra
+            Where matplotlib is not installed.
+        SettingsError
+            For `axes` with several lights.
+        """
+        return plots.visibility(self, axes)
+
     def __repr__(self) -> str:
         return f"<Visibility of shape {self.values.shape}>"
 
@@ -140,7 +169,7 @@ def visibility(
     technique: Technique = RayTraced(),  # noqa: B008 - frozen
     device: Device | str = "auto",
     memory_limit: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     standard_error: bool = True,
     receivers: bool = False,
     sample_masks: bool = False,
@@ -168,8 +197,9 @@ def visibility(
         :func:`doctor`.
     memory_limit : int, optional
         Bytes of device memory for one block of receivers.
-    progress : callable, optional
-        Called with ``(done, total)`` between blocks; returning ``False`` stops.
+    progress : True or callable, optional
+        True shows a bar of tqdm's, which the extra ``[progress]`` installs. A callable gets ``(done, total, info)``
+        between blocks, `info` with the `call`, the `technique` and `elapsed_ms`; returning ``False`` stops.
     standard_error : bool
         Whether to return it, where the technique has one.
     receivers : bool
@@ -192,6 +222,8 @@ def visibility(
         Where no device fits, or it fails.
     Interrupted
         When `progress` returned ``False``.
+    MissingExtra
+        Where a bar is asked for and tqdm is not installed.
     """
     built, several = built_lights(lights)
     where = receivers_of(camera, points, normals)
@@ -209,10 +241,11 @@ def visibility(
         standard_error=bool(standard_error),
         receivers=bool(receivers),
         sample_masks=bool(sample_masks),
-        progress=callback(progress),
+        progress=callback(progress, "visibility", lambda _: technique),
     )
     result = shaped(arrays, (len(built),) if several else (), where.shape, names, given)
     announce(device, result.info["adapter"])
+    logs.call_done("visibility", result.info)
     return result
 
 
@@ -250,13 +283,6 @@ def scene_of(scene: object) -> _core.Scene:
     if not isinstance(scene, Scene):
         raise SceneError(f"scene: a softshadow.Scene expected, got {type(scene).__name__}")
     return scene._built()
-
-
-def callback(progress: Progress | None) -> Progress | None:
-    """A progress callback, or none."""
-    if progress is not None and not callable(progress):
-        raise SettingsError(f"progress: a callable (done, total) expected, got {progress!r}")
-    return progress
 
 
 def shaped(

@@ -287,6 +287,7 @@ def test_exceptions_have_the_bases_that_python_users_catch():
         ss.NoAdapterError: RuntimeError,
         ss.GpuError: RuntimeError,
         ss.GpuOutOfMemory: MemoryError,
+        ss.MissingExtra: ImportError,
         ss.OutputError: OSError,
     }
     for error, base in bases.items():

@@ -65,6 +65,9 @@ pub fn compare(
         let mut go_on = |_, _| on_progress(done, total);
         let (result, _) = run(device, scene, lights, receivers, technique, &options, None, &mut go_on)?;
         done += 1;
+        if !on_progress(done, total) {
+            return Err(Error::Interrupted);
+        }
         Ok::<Visibility, Error>(result)
     };
     let truth = one(reference, true)?;
