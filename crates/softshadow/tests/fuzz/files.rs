@@ -237,12 +237,19 @@ pub(crate) fn folder() -> &'static Path {
 
 fn outcome(bytes: &[u8], name: &str) -> String {
     match parse_all(&folder().join(name), bytes) {
-        Err(error) => Error::Scene(error).to_string(),
+        Err(error) => words(&error.into()),
         Ok(file) => {
             check(&file.scene);
             description(&file)
         }
     }
+}
+
+/// The words of an error; the names of fields and extensions that nobody knows are as many as there are inputs.
+pub(crate) fn words(error: &Error) -> String {
+    let words = error.to_string();
+    let known = ["unknown field", "requires the extension"].into_iter().find(|known| words.contains(known));
+    known.map_or(words, str::to_owned)
 }
 
 /// What the rest of the library relies on.

@@ -45,7 +45,7 @@ pub(crate) enum Finding {
 pub(crate) struct Figures {
     pub(crate) executions: u64,
     pub(crate) seconds: f64,
-    /// How many outcomes differed in their words.
+    /// How many outcomes differed in their words, as far as they were kept.
     pub(crate) outcomes: usize,
     /// The first input of each kind of finding.
     pub(crate) findings: Vec<(Finding, Vec<u8>)>,
@@ -119,7 +119,9 @@ fn explore(target: &Target, inputs: Vec<Vec<u8>>, seed: u64, end: Instant, shown
             Some(input) if turn < given => input.clone(),
             _ if Instant::now() > end => return,
             _ => {
-                let chosen = random.below(pool.len());
+                // New ones may be many and alike, where a message quotes what a file calls things.
+                let among = if random.below(2) == 0 { given } else { pool.len() };
+                let chosen = random.below(among);
                 mutated(&mut random, &pool[chosen], &pool, target.words, target.longest)
             }
         };
@@ -137,7 +139,7 @@ fn explore(target: &Target, inputs: Vec<Vec<u8>>, seed: u64, end: Instant, shown
         let mut shown = lock(shown);
         shown.begun = Instant::now();
         shown.figures.executions += 1;
-        shown.figures.outcomes = seen.len();
+        shown.figures.outcomes = seen.len().min(MOST_INPUTS);
         match outcome {
             Err(finding) if is_new => shown.figures.findings.push((finding, input)),
             Ok(_) if is_new && turn >= given && pool.len() < MOST_INPUTS => {
@@ -158,16 +160,12 @@ fn outcome(target: &Target, input: &[u8]) -> Result<String, Finding> {
     if memory > target.memory { Err(Finding::Memory(memory)) } else { Ok(words) }
 }
 
-/// An outcome without numbers and paths, and without what it quotes, from the first quote to the last.
+/// The end of an outcome, behind the place that it names, without numbers and without what it quotes.
 fn kind(words: &str) -> String {
     let is_quote = |c: char| "'`\"".contains(c);
     let (start, end) = (words.find(is_quote).unwrap_or(words.len()), words.rfind(is_quote).unwrap_or(words.len()));
-    let own = [&words[..start], &words[end..]].concat();
-    let is_letter = |c: char| c.is_ascii_alphabetic();
-    own.split_whitespace()
-        .filter(|word| !word.contains(['/', '\\']))
-        .flat_map(|word| word.split(|c| !is_letter(c)))
-        .collect()
+    let own = words[..start].trim_end_matches([' ', ':']).rsplit(": ").next().unwrap_or_default();
+    [own, &words[end..]].concat().chars().filter(char::is_ascii_alphabetic).collect()
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

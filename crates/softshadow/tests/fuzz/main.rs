@@ -5,6 +5,7 @@
 //! and leaves inputs with new outcomes and findings in `target/fuzz/`.
 
 mod files;
+mod growth;
 mod harness;
 mod memory;
 mod mutate;

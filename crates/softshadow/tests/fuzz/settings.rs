@@ -11,7 +11,7 @@ use softshadow::{
     Shading, Technique, light_points, render, visibility,
 };
 
-use crate::files::folder;
+use crate::files::{folder, words};
 use crate::harness::Target;
 
 pub(crate) const SETTINGS: Target = Target {
@@ -81,7 +81,7 @@ const WORK: u64 = 1 << 16;
 fn outcome(bytes: &[u8]) -> String {
     match call(bytes) {
         Ok(words) => words,
-        Err(error) => error.to_string(),
+        Err(error) => words(&error),
     }
 }
 
