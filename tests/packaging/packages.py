@@ -1,8 +1,8 @@
 """Makes the packages that would be published and tries them where nothing of this checkout is at hand.
 
 Run by ``make package``. The sdist is unpacked and built the way pip builds it, but with the workspace's build folder:
-only the crates of this workspace are compiled again. Its wheel is installed in an empty virtual environment and used from
-another folder.
+only the crates of this workspace are compiled again. Its wheel is installed in an empty virtual environment and used
+from another folder.
 """
 
 from __future__ import annotations
