@@ -179,8 +179,10 @@ class Scene:
         SceneError
             For anything but a ``Trimesh`` or a ``trimesh.Scene``, and as :meth:`from_arrays`.
         """
-        from .trimesh_reader import read
-
+        try:
+            from .trimesh_reader import read
+        except ModuleNotFoundError as error:
+            raise SceneError(f"from_trimesh: {error}; pip install softshadow[trimesh]") from None
         meshes, notes = read(source)
         return cls(meshes, notes=notes)
 
