@@ -45,7 +45,7 @@ def quiet_driver() -> None:
 
 
 def _name(device: object) -> str:
-    if isinstance(device, str):
+    if isinstance(device, str) and device.isascii():
         return device
     if isinstance(device, int) and not isinstance(device, bool) and device >= 0:
         return str(device)
