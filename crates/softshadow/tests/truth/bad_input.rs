@@ -222,8 +222,12 @@ fn results_without_room_are_refused_before_anything_is_computed() {
     let camera = Camera::look_at([0.0, 0.0, 9.0], [0.0; 3], None, 40.0, [8192, 8192]).unwrap();
     let options = Options { sample_masks: true, ..Options::default() };
     let (shade, receivers) = (shade(), Receivers::Camera(camera));
-    let outcome =
-        visibility(context(), &shade, &[light()], &receivers, &ray_traced(32768), &options, &mut |_, _| panic!("begun"));
+    let outcome = visibility(context(), &shade, &[light()], &receivers, &ray_traced(32768), &options, &mut |_, _| {
+        panic!("begun")
+    });
     let error = refused(outcome);
-    assert!(matches!(&error, Error::TooLarge { what, needed, .. } if what == "bytes of results" && *needed > 1 << 41), "{error}");
+    assert!(
+        matches!(&error, Error::TooLarge { what, needed, .. } if what == "bytes of results" && *needed > 1 << 41),
+        "{error}"
+    );
 }
