@@ -7,12 +7,14 @@ BIN := $(VENV)/bin
 # Mesa's device-selection layer complains on stderr where there is no desktop session; the library chooses the device itself.
 export VK_LOADER_LAYERS_DISABLE := VK_LAYER_MESA_device_select
 
-.PHONY: help setup driver venv tools extension demo gallery test test-rust test-python lint docs bench evidence clean
+.PHONY: help setup driver venv tools extension demo gallery test test-rust test-python package fuzz lint docs bench evidence clean
 
 help:
 	@echo "make demo      render the demonstration scene; says where the picture and the numbers are"
 	@echo "make gallery   pictures side by side of what the techniques do, with numbers, in about a minute; demo/gallery/index.md"
 	@echo "make test      all tests, Rust and Python"
+	@echo "make package   the packages that would be published, built and tried in an empty environment"
+	@echo "make fuzz      a minute of hostile input for each reader and for settings, two at a time"
 	@echo "make lint      formatting, clippy, ruff, mypy, stubs"
 	@echo "make docs      reference of the Python package, from its docstrings; docs/softshadow.html"
 	@echo "make bench     time, bytes and error of the techniques, and the papers' ratios, in a few minutes"
@@ -64,6 +66,16 @@ test-rust:
 
 test-python: extension tools
 	$(BIN)/python -m pytest -q
+
+# sdist, wheel and crates; only the crates of this workspace are compiled again.
+package: venv
+	$(BIN)/python tests/packaging/packages.py
+
+# Other inputs every time; the figures name the seed, and target/fuzz/ holds what was new or red.
+fuzz: export SOFTSHADOW_FUZZ_SECONDS = 60
+fuzz: export SOFTSHADOW_FUZZ_SEED ?= $(shell date +%s)
+fuzz:
+	cargo test --release --package softshadow --test fuzz --quiet -- --nocapture --test-threads 2
 
 lint: extension tools
 	cargo fmt --all --check

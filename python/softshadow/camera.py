@@ -141,11 +141,14 @@ class Camera(ByValue):
         """
         # Its resolution is (width, height), against its docstring. K is left alone: its setter changes it.
         # Asking a copy keeps what trimesh works out and caches off the caller's camera.
-        own = copy.copy(camera)
-        width, height = (int(n) for n in own.resolution)
-        fx, fy = own.focal
+        try:
+            own = copy.copy(camera)
+            width, height = (int(n) for n in own.resolution)
+            fx, fy = (float(n) for n in own.focal)
+        except (AttributeError, TypeError, ValueError):
+            raise SceneError(f"camera: a trimesh camera expected, got {type(camera).__name__}") from None
         intrinsics = np.array([[fx, 0.0, width / 2], [0.0, fy, height / 2], [0.0, 0.0, 1.0]])
-        return cls(world_from_camera=np.asarray(transform), K=intrinsics, size=(width, height))
+        return cls(world_from_camera=matrix("transform", transform), K=intrinsics, size=(width, height))
 
     def _built(self) -> _core.Camera:
         """The checked camera of the core."""

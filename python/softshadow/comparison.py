@@ -104,7 +104,7 @@ def compare(
         **where.arguments,
         techniques=[technique_json(f"techniques[{i}]", technique) for i, technique in enumerate(techniques)],
         reference=technique_json("reference", reference),
-        repeats=whole("repeats", repeats, low=1),
+        repeats=whole("repeats", repeats, low=1, high=1000),
         progress=callback(progress, "compare", running),
     )
     return Comparison(**json.loads(text))

@@ -58,7 +58,7 @@ def _quiet_layer() -> None:
 
 
 def _name(device: object) -> str:
-    if isinstance(device, str):
+    if isinstance(device, str) and device.isascii():
         return device
     if isinstance(device, int) and not isinstance(device, bool) and device >= 0:
         return str(device)

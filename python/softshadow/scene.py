@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .by_value import ByValue, set_fields
-from .checks import color, floats, frozen, integers, real, vector
+from .checks import color, floats, frozen, integers, items, real, text, vector
 from .errors import SceneError
 from .extras import needed
 
@@ -73,7 +73,7 @@ class Mesh(ByValue):
             raise SceneError(f"{what}: triangle {triangle} refers to vertex {vertex}, but {there_are}")
         set_fields(
             self,
-            name=str(self.name),
+            name=text("mesh name", self.name),
             vertices=frozen(vertices),
             faces=frozen(faces.astype(np.uint32)),
             base_color=color(f"{what} base_color", self.base_color),
@@ -107,8 +107,8 @@ class Scene:
     __slots__ = ("_core_scene", "_meshes", "_notes")
 
     def __init__(self, meshes: Iterable[Mesh] = (), *, notes: Iterable[str] = ()) -> None:
-        self._meshes: tuple[Mesh, ...] | None = tuple(meshes)
-        self._notes = tuple(notes)
+        self._meshes: tuple[Mesh, ...] | None = items("scene", meshes)
+        self._notes = tuple(text("scene notes", note) for note in items("scene notes", notes))
         if not all(isinstance(mesh, Mesh) for mesh in self._meshes):
             raise SceneError("scene: an iterable of Mesh expected; see Scene.from_arrays")
         self._core_scene: _core.Scene | None = _built(self._meshes, self._notes)
@@ -274,8 +274,10 @@ def trimesh_reader() -> Any:
 def path_name(path: object) -> str:
     """A path as text."""
     try:
-        return os.fsdecode(path)  # type: ignore[arg-type]
-    except TypeError:
+        name = os.fsdecode(path)  # type: ignore[arg-type]
+        os.fsencode(name)
+        return name
+    except (TypeError, UnicodeEncodeError):
         raise SceneError(f"scene: a path expected, got {path!r:.80}") from None
 
 

@@ -61,7 +61,7 @@ def load(name: str) -> ShippedScene:
     SceneError
         For a name that is none of :func:`names`.
     """
-    if not isinstance(name, str):
+    if not isinstance(name, str) or name not in names():
         raise SceneError(f"scene: one of {', '.join(names())} expected, got {name!r:.80}")
     source = _core.shipped_scene(name)
     view = source["camera"]

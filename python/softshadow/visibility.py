@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core, logs, notebook, plots
 from .camera import Camera
-from .checks import floats, memory_limit_bytes
+from .checks import flag, floats, memory_limit_bytes
 from .device import Device, announce, context
 from .errors import SceneError, SettingsError
 from .files import output_format, write, write_csv, write_npz
@@ -228,7 +228,7 @@ def visibility(
     built, several = built_lights(lights)
     where = receivers_of(camera, points, normals)
     decides_all = isinstance(technique, DepthComplexity) or (isinstance(technique, RayTraced) and technique.probes == 0)
-    if sample_masks and not decides_all:
+    if flag("sample_masks", sample_masks) and not decides_all:
         raise SettingsError("sample_masks: only RayTraced without probes and DepthComplexity decide every sample")
     given, names = where.points, names_of(lights if isinstance(lights, Sequence) else [lights])
     arrays = _core.visibility(
@@ -238,9 +238,9 @@ def visibility(
         **where.arguments,
         technique=technique_json("technique", technique),
         memory_limit=memory_limit_bytes(memory_limit),
-        standard_error=bool(standard_error),
-        receivers=bool(receivers),
-        sample_masks=bool(sample_masks),
+        standard_error=flag("standard_error", standard_error),
+        receivers=flag("receivers", receivers),
+        sample_masks=flag("sample_masks", sample_masks),
         progress=callback(progress, "visibility", lambda _: technique),
     )
     result = shaped(arrays, (len(built),) if several else (), where.shape, names, given)

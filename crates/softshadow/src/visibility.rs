@@ -151,6 +151,7 @@ pub(crate) fn run(
             return Err(Error::TooLarge { what: "pixels of the image's longer side".into(), needed, limit });
         }
     }
+    check_results(lights.len(), receivers, technique, options)?;
     let wants_occluders = technique.wants_occluders() && receivers.count() > 0;
     let hidden: &[Light] = if wants_occluders { lights } else { &[] };
     let Prepared { contents, occluders, preparation } = device.prepare(scene, receivers, hidden)?;
@@ -240,6 +241,28 @@ pub(crate) fn run(
         return Err(Error::Gpu(format!("only {} of {total} stages ran", report.stages)));
     }
     Ok(collector.finish(report))
+}
+
+/// What the results of a call may take.
+const MAX_RESULT_BYTES: u64 = 1 << 36;
+
+/// Checks that there is room for the results of a call, before it computes any.
+fn check_results(lights: usize, receivers: &Receivers, technique: &Technique, options: &Options) -> Result<(), Error> {
+    // Values and standard errors in three channels, whether a sample is visible (a bit, then a byte), positions, normals and triangles.
+    let samples = if options.sample_masks { u64::from(technique.samples()) } else { 0 };
+    let each =
+        u128::from(24 + samples + samples.div_ceil(32) * 4) * lights as u128 + if options.receivers { 45 } else { 1 };
+    let needed = u64::try_from(each * u128::from(receivers.count())).unwrap_or(u64::MAX);
+    if needed > MAX_RESULT_BYTES {
+        return Err(Error::TooLarge { what: "bytes of results".into(), needed, limit: MAX_RESULT_BYTES });
+    }
+    // A vector that finds no room ends the process; this one does not.
+    if Vec::<u8>::new().try_reserve_exact(needed as usize).is_err() {
+        return Err(Error::OutOfMemory(format!(
+            "no room for {needed} bytes of results; ask for fewer receivers or lights at a time"
+        )));
+    }
+    Ok(())
 }
 
 /// Rays that a block may need at most, but for a block of a single row: some seconds on a slow software driver. A caller can stop

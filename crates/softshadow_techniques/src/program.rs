@@ -119,6 +119,7 @@ impl VisibilityProgram<'_> {
             return Err(TechniqueError::Setting { technique: self.technique.name(), setting: "occluders", reason });
         }
         self.technique.check_occluders(self.occluders)?;
+        self.lights.iter().try_for_each(|light| light.check_local(&self.scene.local.frame))?;
         if let ReceiverSource::Points(points) = self.receivers {
             points.check_local(&self.scene.local.frame)?;
         }
