@@ -118,7 +118,8 @@ def _visibility(options: argparse.Namespace) -> int:
 
 
 def _compare(options: argparse.Namespace) -> int:
-    return run_compare(options, *_scene_lights_camera(options), _say, _say_progress)
+    scene, lights, camera = _scene_lights_camera(options)
+    return run_compare(options, scene, lights, camera, _say, _say_progress)
 
 
 def _doctor(options: argparse.Namespace) -> int:

@@ -37,7 +37,9 @@ def add_compare(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--technique", action="append", type=parse_technique, help="may be repeated; default: each over its samples"
     )
-    command.add_argument("--reference", type=parse_technique, default=_REFERENCE, help="what errors are measured against")
+    command.add_argument(
+        "--reference", type=parse_technique, default=_REFERENCE, help="what errors are measured against"
+    )
     command.add_argument("--repeats", type=int, default=5, metavar="N", help="timed runs of each; default: %(default)s")
     command.add_argument(
         "--lines",

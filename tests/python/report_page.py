@@ -77,17 +77,22 @@ def problems(html: str, document: dict[str, Any]) -> list[str]:
         references.append((attributes.get("href") or "#").removeprefix("#"))
         found += [f"nothing is called {name!r}" for name in references if name and name not in names]
     found += [line for attributes in page.all("img") for line in _image_problems(attributes)]
-    found += [f"an svg without a name: {a}" for a in page.all("svg") if a.get("role") != "img" or not a.get("aria-labelledby")]
+    found += [
+        f"an svg without a name: {a}" for a in page.all("svg") if a.get("role") != "img" or not a.get("aria-labelledby")
+    ]
     return found + [line for attributes, text in page.numbers for line in _number_problems(attributes, text, document)]
 
 
 def _image_problems(attributes: dict[str, str | None]) -> list[str]:
     if not (attributes.get("alt") or "").strip():
         return ["an image without a text"]
-    content = base64.b64decode((attributes["src"] or "").partition(",")[2], validate=True)
-    with Image.open(io.BytesIO(content)) as image:
-        size = image.size
-        image.load()
+    try:
+        content = base64.b64decode((attributes["src"] or "").partition(",")[2], validate=True)
+        with Image.open(io.BytesIO(content)) as image:
+            size = image.size
+            image.load()
+    except (OSError, ValueError) as error:
+        return [f"no image: {error}"]
     said = (int(attributes["width"] or 0), int(attributes["height"] or 0))
     return [] if size == said else [f"an image of {size} says {said}"]
 

@@ -60,14 +60,16 @@ def test_it_is_drawn_without_a_complaint_and_fetches_nothing(tab, page, width, d
     assert len(np.unique(seen.reshape(-1, 3), axis=0)) > 50
     assert (np.median(seen) < 60) == dark
     # Wide things scroll within themselves.
-    assert tab.evaluate("document.documentElement.scrollWidth") == width
+    assert tab.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
     assert tab.evaluate("[...document.images].every(image => image.complete && image.naturalWidth > 0)")
 
 
 def test_curves_have_the_colours_of_their_series(tab, page):
     tab.resize(1280, 900)
     tab.open(page)
-    strokes = tab.evaluate("[...document.querySelectorAll('#card .s0 .curve, #card .s1 .curve')].map(c => getComputedStyle(c).stroke)")
+    strokes = tab.evaluate(
+        "[...document.querySelectorAll('#card .s0 .curve, #card .s1 .curve')].map(c => getComputedStyle(c).stroke)"
+    )
     assert set(strokes) == {"rgb(0, 114, 178)", "rgb(213, 94, 0)"}
     fill = tab.evaluate("getComputedStyle(document.querySelector('.chart .dominated .mark')).fill")
     assert fill == "rgb(255, 255, 255)"
@@ -99,7 +101,7 @@ def test_the_slider_works_with_keys_and_with_the_pointer(tab, page):
     assert (moved["slider"], moved["split"]) == ("53", "inset(0px 0px 0px 53%)")
     assert "split=53" in moved["hash"]
     tab.press("Home", 36)
-    assert state(tab)["split"] == "inset(0px)"
+    assert state(tab)["split"] == "inset(0px 0px 0px 0%)"
     x, y, width = tab.evaluate(
         """(() => {
           const stage = document.querySelector('.viewer[data-name=card] .stage');
@@ -149,12 +151,12 @@ def test_a_technique_is_chosen_and_its_keyboard_order_is_that_of_the_page(tab, p
 
 
 def test_without_scripts_all_images_are_there(tab, page):
-    tab.ask("Emulation.setScriptExecutionDisabled", value=True)
-    try:
-        tab.open(page)
-    finally:
-        tab.ask("Emulation.setScriptExecutionDisabled", value=False)
-    assert tab.evaluate("[...document.querySelectorAll('.viewer')].every(box => getComputedStyle(box).display === 'none')")
+    text = page.read_text()
+    page.write_text(text[: text.index("<script>\n")] + text[text.index("</script></body>") + len("</script>") :])
+    tab.open(page)
+    assert tab.evaluate(
+        "[...document.querySelectorAll('.viewer')].every(box => getComputedStyle(box).display === 'none')"
+    )
     tab.evaluate("document.querySelectorAll('details').forEach(box => { box.open = true })")
     assert tab.evaluate("[...document.images].every(image => image.getBoundingClientRect().width > 0)")
 

@@ -33,7 +33,12 @@ REFERENCE = RayTraced(samples=256, passes=8, pattern="low_discrepancy", seed=99)
 GROWING: tuple[Technique, ...] = (RayTraced(samples=64), DepthComplexity(samples=64))
 """What growth is shown of."""
 _SCALES = (0.5, 2.0)
-_SIZES = {"RectLight": ("width", "height"), "DiscLight": ("radius",), "SphereLight": ("radius",), "SunLight": ("diameter_deg",)}
+_SIZES = {
+    "RectLight": ("width", "height"),
+    "DiscLight": ("radius",),
+    "SphereLight": ("radius",),
+    "SunLight": ("diameter_deg",),
+}
 
 
 def main(arguments: list[str] | None = None) -> int:

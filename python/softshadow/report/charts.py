@@ -7,10 +7,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
-_WIDTH, _PLOT_HEIGHT = 620, 330
-_LEFT, _RIGHT, _TOP, _BOTTOM = 64, 18, 14, 46
+_WIDTH, _PLOT_HEIGHT = 480, 300
+_LEFT, _RIGHT, _TOP, _BOTTOM = 60, 14, 12, 46
 _LEGEND_LINE = 19
-# A decade of one axis is not drawn wider than data that hardly differ; they would seem to differ a lot.
+# Where marks of one series have their labels: those of two that lie together are told apart.
+_LABELS = ((7, -6, "start"), (7, 15, "start"), (-7, 15, "end"), (-7, -6, "end"))
+# An axis spans at least so many times: what hardly differs must not seem to differ a lot.
 _SMALLEST_SPAN = 1.6
 
 COLORS = 8
@@ -154,14 +156,13 @@ def _above(point: Point) -> tuple[float, ...] | None:
 
 def _frame(chart: Chart, across: _Axis, up: _Axis) -> list[str]:
     right, width, height = _WIDTH - _RIGHT, _WIDTH - _RIGHT - _LEFT, _PLOT_HEIGHT - _TOP
-    parts = []
+    parts, words = [], []
     if chart.floor is not None and chart.floor > 0 and math.log10(chart.floor) > up.low:
         top = up.at(chart.floor)
         parts.append(
             f'<rect class="floor" x="{_LEFT}" y="{top:.1f}" width="{width}" height="{_PLOT_HEIGHT - top:.1f}"/>'
-            f'<text class="small" x="{right - 6}" y="{min(top + 14, _PLOT_HEIGHT - 5):.1f}" text-anchor="end">'
-            f"{escape(chart.floor_label)}</text>"
         )
+        words.append(f'<text class="small" x="{_LEFT + 6}" y="{_PLOT_HEIGHT - 6}">{escape(chart.floor_label)}</text>')
     for x in across.ticks():
         at = across.at(x)
         parts.append(f'<path class="grid" d="M{at:.1f} {_TOP}V{_PLOT_HEIGHT}"/>')
@@ -176,7 +177,7 @@ def _frame(chart: Chart, across: _Axis, up: _Axis) -> list[str]:
         f'<text x="{(_LEFT + right) / 2}" y="{_PLOT_HEIGHT + 36}" text-anchor="middle">{escape(chart.x_label)}</text>'
         f'<text transform="translate(15 {middle}) rotate(-90)" text-anchor="middle">{escape(chart.y_label)}</text>'
     )
-    return parts
+    return parts + words
 
 
 def _curves(chart: Chart, across: _Axis, up: _Axis) -> list[str]:
@@ -202,7 +203,12 @@ def _point(point: Point, x: float, y: float, across: _Axis, up: _Axis, index: in
         bars.append(f'<path class="bar" d="M{x:.1f} {low:.1f}V{high:.1f}"/>')
     dominated = ' class="dominated"' if point.is_dominated else ""
     tip = f"<title>{escape(point.tip)}</title>" if point.tip else ""
-    label = f'<text class="small" x="{x + 7:.1f}" y="{y - 6:.1f}">{escape(point.label)}</text>' if point.label else ""
+    label = ""
+    if point.label:
+        dx, dy, anchor = _LABELS[index % len(_LABELS)]
+        label = (
+            f'<text class="small" x="{x + dx:.1f}" y="{y + dy:.1f}" text-anchor="{anchor}">{escape(point.label)}</text>'
+        )
     return f"<g{dominated}>{tip}{''.join(bars)}{_mark(index, x, y)}{label}</g>"
 
 

@@ -8,9 +8,7 @@ from .charts import Chart, Point, Series
 from .judgement import Row, domination, families, full_name, rmse, short_knob
 
 
-def front(
-    title: str, rows: Sequence[Row], standard_error: float | None, peers: Sequence[str] = (), knobs: str = "samples"
-) -> Chart | None:
+def front(title: str, rows: Sequence[Row], standard_error: float | None, peers: Sequence[str] = ()) -> Chart | None:
     """A curve a family, those of `peers` dashed; None without an error that a logarithmic axis can show."""
     beaten = domination(rows, standard_error)
     series = []
@@ -25,7 +23,7 @@ def front(
         title=title,
         description=f"Milliseconds against the root mean square error in the penumbra, both logarithmic: {words}. "
         "Hollow grey marks are dominated: another takes no more time and errs no more.",
-        x_label=f"ms, median; bars from fastest to slowest run; marks with their {knobs}",
+        x_label="ms: median, fastest to slowest run",
         y_label="RMSE in the penumbra",
         series=series,
         floor=None if standard_error is None else 2 * standard_error,

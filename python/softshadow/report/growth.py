@@ -1,4 +1,4 @@
-"""How time and error grow: with samples within a comparison, with light, triangles and receivers from one to the next."""
+"""How time and error grow: with samples in a comparison; with light, triangles, receivers from one to the next."""
 
 from __future__ import annotations
 

@@ -68,6 +68,6 @@ def _reduced(values: NDArray[np.float32]) -> NDArray[np.float32]:
 def _painted(shares: NDArray[np.float32], palette: NDArray[np.uint8]) -> Shown:
     """The palette's last colour is for what is not known."""
     places = np.nan_to_num(np.clip(shares, 0, 1) * (_LEVELS - 1)).round()
-    places = np.where(np.isnan(shares), _LEVELS, places).astype(np.uint8)
-    height, width = places.shape
-    return Shown(_core.png_palette8(places.ravel(), palette, (width, height)), (width, height))
+    indices: NDArray[np.uint8] = np.where(np.isnan(shares), _LEVELS, places).astype(np.uint8)
+    height, width = shares.shape
+    return Shown(_core.png_palette8(indices.ravel(), palette, (width, height)), (width, height))

@@ -28,7 +28,7 @@ class Numbers:
         self._document = document
 
     def __call__(self, pointer: str, kind: str) -> str:
-        """The number at a JSON pointer as an element ``data``, whose `value` has all digits; a dash where there is none."""
+        """The number at a JSON pointer as an element whose `value` has all digits; a dash where there is none."""
         value: Any = self._document
         for step in pointer.split("/")[1:]:
             if value is None:

@@ -8,7 +8,7 @@ import platform
 import re
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass
-from datetime import datetime, timezone
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +22,8 @@ from .fronts import front
 from .lines import Line, peers_of, ratios_of
 from .page import page
 
-_SCALE = 2.0
-"""Of PNGs: figures are 620 units wide."""
+_SCALE = 2.5
+"""Of PNGs: figures are 480 units wide."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Report:
         return {
             "title": self.title,
             "version": __version__,
-            "made": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+            "made": datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
             "system": {"system": platform.system(), "machine": platform.machine(), "threads": os.cpu_count()},
             "comparisons": [
                 {"id": identity, "title": title, **comparison.to_dict()}

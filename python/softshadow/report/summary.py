@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from html import escape
 from typing import Any
 
-from .judgement import LEVELS, Row, domination, families, fastest, full_name, knob, rmse
+from .judgement import LEVELS, Dominated, Row, domination, families, fastest, full_name, knob, rmse
+from .markup import note, table
 from .numbers import NOTHING, Numbers
 
 _BUSY = 1.3
@@ -15,11 +16,20 @@ _BUSY = 1.3
 
 def summary(document: dict[str, Any], numbers: Numbers) -> str:
     """The section that opens the page."""
-    parts = ['<section id="summary"><h2>Who is fastest, and who is beaten</h2>', *_warnings(document)]
-    if document["comparisons"]:
-        parts += [_levels(document["comparisons"], numbers), _beaten(document["comparisons"])]
-    parts += [_behind(document["peers"], numbers), *_noise(document), "</section>"]
-    return "".join(parts)
+    comparisons = document["comparisons"]
+    judged = [domination(one["rows"], one["reference_standard_error"]) for one in comparisons]
+    return "".join(
+        [
+            '<section id="summary"><h2>Who is fastest, and who is beaten</h2>',
+            *_warnings(document),
+            _statements(comparisons, judged),
+            _behind(document["peers"], numbers),
+            _levels(comparisons, numbers),
+            _beaten(comparisons, judged),
+            *_noise(document),
+            "</section>",
+        ]
+    )
 
 
 def _warnings(document: dict[str, Any]) -> list[str]:
@@ -36,18 +46,17 @@ def _warnings(document: dict[str, Any]) -> list[str]:
 
 
 def _levels(comparisons: list[dict[str, Any]], numbers: Numbers) -> str:
-    head = "".join(f'<th scope="col">≤ {level}</th>' for level in LEVELS)
-    body = []
+    lines = []
     for c, comparison in enumerate(comparisons):
         rows, error = comparison["rows"], comparison["reference_standard_error"]
-        cells = "".join(f"<td>{_fastest(rows, level, error, c, numbers)}</td>" for level in LEVELS)
-        body.append(f'<tr><th scope="row"><a href="#{comparison["id"]}">{escape(comparison["title"])}</a></th>{cells}</tr>')
-    return (
-        '<div class="scroll" tabindex="0" role="region" aria-label="Fastest settings"><table class="words">'
-        "<caption>The fastest setting whose root mean square error in the penumbra is at most so large, its milliseconds, "
-        "and the fastest of the next technique.</caption>"
-        f'<thead><tr><th scope="col">scene</th>{head}</tr></thead><tbody>{"".join(body)}</tbody></table></div>'
+        name = f'<a href="#{comparison["id"]}">{escape(comparison["title"])}</a>'
+        lines.append([name, *(_fastest(rows, level, error, c, numbers) for level in LEVELS)])
+    explained = note(
+        "The fastest setting whose root mean square error in the penumbra is at most so large, its milliseconds, and "
+        "the fastest of the next technique."
     )
+    head = ["scene", *(f"≤ {level}" for level in LEVELS)]
+    return f"<h3>Fastest for an error</h3>{explained}{table('Fastest settings', head, lines, words=None)}"
 
 
 def _fastest(rows: list[Row], level: float, standard_error: float | None, c: int, numbers: Numbers) -> str:
@@ -64,70 +73,93 @@ def _fastest(rows: list[Row], level: float, standard_error: float | None, c: int
     return f"<b>{words[0]}</b>" + "".join(f"<br><small>{next_}</small>" for next_ in words[1:])
 
 
-def _beaten(comparisons: list[dict[str, Any]]) -> str:
-    """A sentence a family: in which scenes it is dominated, and by whom."""
-    found: dict[str, list[tuple[str, Sequence[int], list[Any], list[Row]]]] = {}
-    for comparison in comparisons:
+def _statements(comparisons: list[dict[str, Any]], judged: list[list[Dominated | None]]) -> str:
+    """A sentence a family: in which scenes it is dominated at every setting, at some, nowhere."""
+    found: dict[str, dict[str, list[str]]] = {}
+    counts: dict[str, list[bool]] = {}
+    for comparison, verdicts in zip(comparisons, judged, strict=True):
         rows = comparison["rows"]
-        judged = domination(rows, comparison["reference_standard_error"])
         for name, members in families(rows).items():
-            able = [i for i in members if rmse(rows[i]) is not None]
+            able = [index for index in members if rmse(rows[index]) is not None]
+            beaten = [verdict.is_certain for index in able if (verdict := verdicts[index]) is not None]
+            counts.setdefault(name, []).extend(beaten)
             if able:
-                found.setdefault(name, []).append((comparison["title"], able, judged, rows))
+                where = "at every setting" if len(beaten) == len(able) else "at some settings" if beaten else "nowhere"
+                found.setdefault(name, {}).setdefault(where, []).append(comparison["title"])
     sentences = []
     for name, places in found.items():
-        clauses = [_clause(name, *place) for place in places]
-        sentences.append(f"<li><b>{escape(name)}</b> is {escape('; '.join(clauses))}.</li>")
-    return (
-        "<h3>Dominated</h3><p>A setting is dominated where another takes no more time (median) and errs no more. It is "
-        "<em>surely</em> so where their times lie apart in all runs and their errors by more than twice the reference’s own "
-        f"standard error, or not at all; else within noise.</p><ul>{''.join(sentences)}</ul>"
+        clauses = [f"{where} in {_listed(titles)}" for where, titles in sorted(places.items())]
+        sure, judged_so = sum(counts[name]), len(counts[name])
+        doubt = f" ({sure} of {judged_so} surely, the others within noise)" if sure < judged_so else ""
+        sentences.append(f"<li><b>{escape(name)}</b> is dominated {escape('; '.join(clauses))}{doubt}.</li>")
+    return f"<ul>{''.join(sentences)}</ul>" if sentences else "<p>No scene has a penumbra: nothing to judge.</p>"
+
+
+def _beaten(comparisons: list[dict[str, Any]], judged: list[list[Dominated | None]]) -> str:
+    """A row a scene, a column a family: which settings are dominated, and by what."""
+    names = list(dict.fromkeys(name for one in comparisons for name in families(one["rows"])))
+    lines = []
+    for comparison, verdicts in zip(comparisons, judged, strict=True):
+        members = families(comparison["rows"])
+        cells = [_verdict(members.get(name, []), comparison["rows"], verdicts) for name in names]
+        lines.append([escape(comparison["title"]), *cells])
+    explained = note(
+        "Another setting takes no more time (median) and errs no more: it stands at the arrow. “Within noise” where "
+        "their times overlap in any run, or their errors differ by less than twice the reference’s own standard error."
     )
+    head = ["scene", *map(escape, names)]
+    return f"<h3>Dominated settings</h3>{explained}{table('Dominated settings', head, lines, words=None)}"
 
 
-def _clause(name: str, scene: str, members: Sequence[int], judged: list[Any], rows: list[Row]) -> str:
-    beaten = [i for i in members if judged[i] is not None]
-    if not beaten:
-        return f"nowhere dominated in {scene}"
-    others = [rows[judged[i].by]["technique"] for i in beaten]
-    by = ", ".join(dict.fromkeys("its own other settings" if families([rows[judged[i].by]]).keys() == {name} else full_name(o)
-                                 for i, o in zip(beaten, others, strict=True)))
-    surely = sum(judged[i].is_certain for i in beaten)
-    certainty = "surely" if surely == len(beaten) else "within noise" if surely == 0 else f"{surely} of them surely"
-    if len(beaten) == len(members):
-        where = "at every setting"
-    else:
-        where = "at " + ", ".join(knob(rows[i]["technique"]) or "its only setting" for i in beaten)
-    return f"dominated {where} in {scene} by {by} ({certainty})"
+def _verdict(members: Sequence[int], rows: list[Row], verdicts: list[Dominated | None]) -> str:
+    able = [index for index in members if rmse(rows[index]) is not None]
+    if not able:
+        return NOTHING
+    parts = []
+    for index in able:
+        verdict = verdicts[index]
+        if verdict is not None:
+            own = knob(rows[index]["technique"]) or "its only setting"
+            by, doubt = full_name(rows[verdict.by]["technique"]), "" if verdict.is_certain else ", within noise"
+            parts.append(f"{escape(own)} <small>← {escape(by)}{doubt}</small>")
+    return "<br>".join(parts) or "none"
+
+
+def _listed(words: Sequence[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def _behind(peers: list[dict[str, Any]], numbers: Numbers) -> str:
+    """Where the fastest of other tracers is faster than ours at an error."""
     if not peers:
-        return (
-            "<p class='note'>No other tracers were measured beside these: "
-            "<code>python -m softshadow.bench.peers --json FILE</code> does that.</p>"
-        )
+        command = "<code>python -m softshadow.bench.peers --json FILE</code>"
+        return note(f"No other tracers were measured beside these: {command} does that.")
     items = []
-    for p, run in enumerate(peers):
-        rows = run["rows"]
-        sides = [[i for i, row in enumerate(rows) if row["ours"] is ours] for ours in (True, False)]
-        for level in LEVELS:
-            ours, theirs = (fastest(rows, level, side) for side in sides)
-            if theirs is None:
-                continue
-            place = f"{escape(run['scene'])}, RMSE ≤ {level}"
-            their_words = f"{escape(full_name(rows[theirs]['technique']))} takes {numbers(f'/peers/{p}/rows/{theirs}/median_ms', 'ms')} ms"
-            if ours is None:
-                items.append(f'<li class="behind">{place}: {their_words}; none of ours gets there.</li>')
-            elif rows[ours]["median_ms"] > rows[theirs]["median_ms"]:
-                ratio = rows[ours]["median_ms"] / rows[theirs]["median_ms"]
-                own = f"{escape(full_name(rows[ours]['technique']))} {numbers(f'/peers/{p}/rows/{ours}/median_ms', 'ms')} ms"
-                items.append(f'<li class="behind">{place}: {their_words}, our {own}: {ratio:.2f} times as long.</li>')
-    scenes = ", ".join(dict.fromkeys(run["scene"] for run in peers))
+    for index, run in enumerate(peers):
+        found = (_lost(run, level, f"/peers/{index}/rows", numbers) for level in LEVELS)
+        items += [f'<li class="behind">{words}</li>' for words in found if words]
     if not items:
-        levels = ", ".join(str(level) for level in LEVELS)
-        return f"<h3>Beside other tracers</h3><p>Behind none of them in {escape(scenes)}, at an RMSE of {levels}.</p>"
+        scenes = escape(_listed(list(dict.fromkeys(run["scene"] for run in peers))))
+        return f"<p>Behind no other tracer in {scenes}, at an RMSE of {_listed([str(level) for level in LEVELS])}.</p>"
     return f"<h3>Where we are behind another tracer</h3><ul>{''.join(items)}</ul>"
+
+
+def _lost(run: dict[str, Any], level: float, at: str, numbers: Numbers) -> str:
+    rows = run["rows"]
+    ours, theirs = (
+        fastest(rows, level, [index for index, row in enumerate(rows) if row["ours"] is side]) for side in (True, False)
+    )
+
+    def words(index: int) -> str:
+        return f"{escape(full_name(rows[index]['technique']))} takes {numbers(f'{at}/{index}/median_ms', 'ms')} ms"
+
+    if theirs is None:
+        return ""
+    place = f"{escape(run['scene'])}, RMSE ≤ {level}"
+    if ours is None:
+        return f"{place}: {words(theirs)}; none of ours gets there."
+    ratio = rows[ours]["median_ms"] / rows[theirs]["median_ms"]
+    return f"{place}: {words(theirs)}, our {words(ours)}: {ratio:.2f} times as long." if ratio > 1 else ""
 
 
 def _noise(document: dict[str, Any]) -> list[str]:
@@ -140,7 +172,7 @@ def _noise(document: dict[str, Any]) -> list[str]:
     words = f"Times are medians of {counts} runs that took turns after a warm-up. "
     if busy:
         words += (
-            f"In {busy} of {len(rows)} rows the slowest run took more than {_BUSY} times the fastest: the machine was busy, "
-            "and small ratios mean nothing."
+            f"In {busy} of {len(rows)} rows the slowest run took more than {_BUSY} times the fastest: the machine was "
+            "busy, and small ratios mean nothing."
         )
     return [f'<p class="{"warning" if 3 * busy > len(rows) else "note"}">{words}</p>']
