@@ -14,7 +14,7 @@ help:
 	@echo "make gallery   pictures side by side of what the techniques do, with numbers, in about a minute; demo/gallery/index.md"
 	@echo "make test      all tests, Rust and Python"
 	@echo "make lint      formatting, clippy, ruff, mypy, stubs"
-	@echo "make bench     time, bytes and error of the techniques, and the papers' ratios, in a few minutes"
+	@echo "make bench     time, bytes and error of the techniques, and the papers' ratios, in a few minutes; bench/report/index.html"
 	@echo "make evidence  heavy checks against other renderers, with meshes; writes EVIDENCE.md"
 
 setup: extension driver
@@ -66,9 +66,11 @@ lint: extension
 	$(BIN)/python -m mypy.stubtest softshadow._core
 
 # More scenes, sizes and settings: target/release/softshadow-bench --help
-bench:
+bench: extension
 	cargo build --release --package softshadow_bench --quiet
-	target/release/softshadow-bench --ratios
+	mkdir -p bench
+	target/release/softshadow-bench --ratios --json bench/lines.jsonl
+	$(BIN)/python -m softshadow.bench.report --output bench/report --lines bench/lines.jsonl
 
 # Other renderers are large; they are wanted only here.
 evidence: setup
@@ -79,4 +81,4 @@ evidence: setup
 
 clean:
 	cargo clean
-	rm -rf $(VENV) demo dist
+	rm -rf $(VENV) demo bench dist

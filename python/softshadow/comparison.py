@@ -18,7 +18,7 @@ from .device import Device, announce, context
 from .errors import SceneError, SettingsError
 from .lights import Light
 from .scene import Scene
-from .techniques import RayTraced, Technique, technique_json
+from .techniques import TECHNIQUES, RayTraced, Technique, technique_json
 from .visibility import Progress, callback, receivers_of, scene_of
 
 
@@ -184,6 +184,9 @@ def _cell(row: dict[str, Any], path: tuple[str, ...]) -> str:
     if value is None:
         return "-"
     if isinstance(value, dict):
-        settings = ", ".join(f"{name}={setting}" for name, setting in value.items() if name != "name")
-        return f"{value['name']}({settings})"
+        usual = vars(TECHNIQUES[value["name"]]())
+        settings = {name: setting for name, setting in value.items() if name != "name"}
+        first = next(iter(settings), None)
+        changed = (f"{k}={v}" for k, v in settings.items() if k == first or v != usual[k])
+        return f"{value['name']}({', '.join(changed)})"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -201,7 +201,7 @@ def test_the_first_screen_says_who_is_dominated_and_where_we_are_behind():
     assert "RMSE ≤ 0.02" in behind[0]
     assert "1.33 times as long" in behind[0]
     ahead = replace(full(), lines=[peer("ours", 16, 10, 0.004, ours=True), peer("Theirs", 64, 30, 0.012)]).to_html()
-    assert "Behind none of them in card" in ahead
+    assert "Behind no other tracer in card" in ahead
     alone = replace(full(), lines=[peer("ours", 16, 10, 0.04, ours=True), peer("Theirs", 64, 30, 0.012)]).to_html()
     assert "none of ours gets there" in alone
     assert "No other tracers were measured" in replace(full(), lines=[]).to_html()

@@ -65,7 +65,8 @@ def ratios(measured: Sequence[dict[str, Any]], numbers: Numbers) -> str:
         )
     head = ["scene", "ratio", "time of", "over that of", "published", "asked", "ours", "from … to", "RMSE of", "over"]
     explained = (
-        "Times of two settings over each other, turn by turn in one run of <code>softshadow-bench</code>. Published are "
-        "those of Forest, Barthe and Paulin (2008) on the hardware of their day; asked is what this project asks of itself."
+        "Times of two settings over each other, turn by turn in one run of <code>softshadow-bench</code>. Published "
+        "are those of Forest, Barthe and Paulin (2008) on the hardware of their day; asked is what this project asks of "
+        "itself."
     )
     return section("ratios", "Published ratios beside ours", note(explained), table("Ratios", head, lines, words=6))
