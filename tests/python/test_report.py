@@ -15,7 +15,8 @@ import report_page
 import softshadow as ss
 from conftest import CARD, FLOOR, SQUARE, camera_above, compare, light_above, read_png
 from softshadow.bench import peers
-from softshadow.bench.report import divided, scaled
+from softshadow.bench.report import divided, scaled, serving
+from softshadow.bench.scenes import Measured
 from softshadow.cli import main
 from softshadow.report import Report, charts, images, judgement, read_lines
 from softshadow.report.growth import across
@@ -240,6 +241,12 @@ def test_peers_write_the_lines_that_reports_take():
     assert runs[0]["rows"][0]["median_ms"] == 4.0
 
 
+def test_what_was_not_measured_is_told():
+    failure = {"kind": "failure", "scene": "canopy", "size": [8, 8], "case": "edges & <i>", "reason": "too <dense>"}
+    html = replace(full(), lines=[failure, failure | {"kind": "skip", "case": None}]).to_html()
+    assert "<li>canopy, 8 × 8, edges &amp; &lt;i&gt;: too &lt;dense&gt;</li><li>canopy, 8 × 8: too" in html
+
+
 # --- figures
 
 
@@ -266,6 +273,29 @@ def test_figures_place_points_on_logarithmic_axes():
     assert text.count("dashed") == 2
     assert "floor" not in text
     assert 'class="floor"' in charts.svg(chart(points, 0.005), "f")
+
+
+def test_labels_stand_where_there_is_room():
+    def labels(*points: charts.Point) -> list[str]:
+        return re.findall(r'<text class="small"[^>]*>(\d+)</text>', charts.svg(chart(list(points)), "f"))
+
+    far = charts.Point(x=100, y=0.1)
+    assert labels(charts.Point(x=1, y=0.1, label="64"), far) == ["64", "64"]
+    # Both series have this point: one place is left for neither of the third and fourth.
+    crowd = [charts.Point(x=1 + k / 1000, y=0.1, label=str(k)) for k in range(9)]
+    assert 2 <= len(labels(*crowd, far)) <= 4
+
+
+def test_a_technique_that_refuses_a_scene_does_not_end_the_comparison():
+    model = Measured("card", card(), light_above(), camera_above((8, 8)))
+    wrong = ss.DepthComplexity(evaluation="blended")
+    spheres = replace(model, light=ss.SphereLight(radius=0.1, world_from_light=ss.look_at((0, 3, 0), (0, 0, 0))))
+    z_fail = ss.DepthComplexity(evaluation="blended", initial_counts="z_fail")
+    able, refused = serving(spheres, [ss.RayTraced(), z_fail], "software")
+    assert able == [ss.RayTraced()]
+    assert refused[0]["case"].startswith("depth_complexity, ")
+    assert "sphere" in refused[0]["reason"]
+    assert serving(model, [wrong], "software") == ([wrong], [])
 
 
 @pytest.mark.parametrize(

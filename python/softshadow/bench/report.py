@@ -1,16 +1,17 @@
 """``python -m softshadow.bench.report``: the page of ``make bench``.
 
-Every technique over its knob on each scene, against a reference of many rays, with images; on the scene with the fewest
-triangles how time and error grow with receivers, light and triangles; and what JSON lines of ``softshadow-bench --ratios`` and of
-``softshadow.bench.peers`` add.
+Every technique over its knob on each scene, against a reference of many rays, with images; on the scene with the
+fewest triangles how time and error grow with receivers, light and triangles; and what JSON lines of
+``softshadow-bench --ratios`` and of ``softshadow.bench.peers`` add.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,8 +25,10 @@ from softshadow.device import quiet_driver
 from softshadow.errors import SoftShadowError
 from softshadow.lights import DiscLight, Light, RectLight, SphereLight, SunLight
 from softshadow.report import Report, read_lines
+from softshadow.report.judgement import full_name
 from softshadow.scene import Mesh, Scene
 from softshadow.techniques import DepthComplexity, RayTraced, Technique
+from softshadow.visibility import visibility
 
 from .scenes import Measured, find
 
@@ -60,11 +63,17 @@ def main(arguments: list[str] | None = None) -> int:
         started = time.perf_counter()
         try:
             model = find(name, chosen.size)
-            measured.append(_compared(model, usual_techniques(chosen.device), chosen.repeats, chosen.device))
+            able, refused = serving(model, usual_techniques(chosen.device), chosen.device)
+            lines += refused
+            measured.append(_compared(model, able, chosen.repeats, chosen.device))
         except SoftShadowError as error:
             failures += 1
+            lines.append(_failure(name, chosen.size, None, error))
             print(f"{name}: {error}", flush=True)
             continue
+        failures += len(refused)
+        for line in refused:
+            print(f"{name}, {line['case']}: {line['reason']}", flush=True)
         if smallest is None or model.scene.triangle_count < smallest.scene.triangle_count:
             smallest = model
         print(f"{name}, {time.perf_counter() - started:.1f} s\n{measured[-1]}", flush=True)
@@ -73,6 +82,26 @@ def main(arguments: list[str] | None = None) -> int:
         Report(measured, growth=growth, lines=lines, title="softshadow: speed against error").save(chosen.output)
         print(f"page {chosen.output / 'index.html'}")
     return 1 if failures else 0
+
+
+def serving(
+    model: Measured, techniques: Sequence[Technique], device: str
+) -> tuple[list[Technique], list[dict[str, Any]]]:
+    """Techniques that serve a scene, and lines about those that do not: one that refuses must not end a comparison."""
+    able, refused = [], []
+    for technique in techniques:
+        try:
+            visibility(model.scene, model.light, camera=model.camera, technique=technique, device=device)
+            able.append(technique)
+        except SoftShadowError as error:
+            refused.append(
+                _failure(model.name, model.camera.size[0], full_name(json.loads(technique.to_json())), error)
+            )
+    return able, refused
+
+
+def _failure(scene: str, size: int, case: str | None, error: Exception) -> dict[str, Any]:
+    return {"kind": "failure", "scene": scene, "size": [size, size], "case": case, "reason": str(error)}
 
 
 def _compared(model: Measured, techniques: Any, repeats: int, device: str) -> Comparison:

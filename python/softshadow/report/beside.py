@@ -18,8 +18,8 @@ def peers(runs: Sequence[dict[str, Any]], numbers: Numbers) -> str:
         return ""
     parts = [
         note(
-            "Measured in a process of their own, on the same receivers and taking turns. Of ours the time from the camera "
-            "to visibility counts, of the others the query alone. Dashed curves are the others’."
+            "Measured in a process of their own, on the same receivers and taking turns. Of ours the time from the "
+            "camera to visibility counts, of the others the query alone. Dashed curves are the others’."
         )
     ]
     for index, run in enumerate(runs):
@@ -66,7 +66,7 @@ def ratios(measured: Sequence[dict[str, Any]], numbers: Numbers) -> str:
     head = ["scene", "ratio", "time of", "over that of", "published", "asked", "ours", "from … to", "RMSE of", "over"]
     explained = (
         "Times of two settings over each other, turn by turn in one run of <code>softshadow-bench</code>. Published "
-        "are those of Forest, Barthe and Paulin (2008) on the hardware of their day; asked is what this project asks of "
-        "itself."
+        "are those of Forest, Barthe and Paulin (2008) on the hardware of their day; asked is what this project asks "
+        "of itself."
     )
     return section("ratios", "Published ratios beside ours", note(explained), table("Ratios", head, lines, words=6))

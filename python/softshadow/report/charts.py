@@ -10,10 +10,14 @@ from html import escape
 _WIDTH, _PLOT_HEIGHT = 480, 300
 _LEFT, _RIGHT, _TOP, _BOTTOM = 60, 14, 12, 46
 _LEGEND_LINE = 19
-# Where marks of one series have their labels: those of two that lie together are told apart.
-_LABELS = ((7, -6, "start"), (7, 15, "start"), (-7, 15, "end"), (-7, -6, "end"))
+_MOST_TICKS = 7
+# Places of a label beside its mark, in the order in which they are tried; how high and about how wide its digits are.
+_PLACES = ((7, -6, "start"), (7, 15, "start"), (-7, 15, "end"), (-7, -6, "end"))
+_DIGIT_HEIGHT, _DIGIT_WIDTH = 10, 6.3
 # An axis spans at least so many times: what hardly differs must not seem to differ a lot.
 _SMALLEST_SPAN = 1.6
+
+_Box = tuple[float, float, float, float]
 
 COLORS = 8
 """Colours of the style; further series take them again with other marks."""
@@ -123,14 +127,14 @@ class _Axis:
 
     def ticks(self) -> list[float]:
         """Round values within the axis, no more than there is room for."""
-        for steps in ((1, 2, 5), (1, 3), (1,)):
+        for steps in ((1, 1.5, 2, 3, 4, 5, 7), (1, 2, 5), (1, 3), (1,)):
             found = [
                 step * 10.0**decade
                 for decade in range(math.floor(self.low), math.ceil(self.high) + 1)
                 for step in steps
                 if self.low <= math.log10(step * 10.0**decade) <= self.high
             ]
-            if len(found) <= 9:
+            if len(found) <= _MOST_TICKS:
                 break
         if len(found) < 2:
             found = [10.0 ** (self.low + share * (self.high - self.low)) for share in (0.1, 0.5, 0.9)]
@@ -182,18 +186,34 @@ def _frame(chart: Chart, across: _Axis, up: _Axis) -> list[str]:
 
 def _curves(chart: Chart, across: _Axis, up: _Axis) -> list[str]:
     parts = []
+    taken: list[_Box] = []
     for index, series in enumerate(chart.series):
         places = [(across.at(point.x), up.at(point.y)) for point in series.points]
         way = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in places)
         dashed = " dashed" if series.is_dashed else ""
         parts.append(f'<g class="s{index % COLORS}"><path class="curve{dashed}" d="{way}"/>')
         for point, (x, y) in zip(series.points, places, strict=True):
-            parts.append(_point(point, x, y, across, up, index))
+            parts.append(_point(point, x, y, across, up, index, _label(point.label, x, y, taken)))
         parts.append("</g>")
     return parts
 
 
-def _point(point: Point, x: float, y: float, across: _Axis, up: _Axis, index: int) -> str:
+def _label(text: str, x: float, y: float, taken: list[_Box]) -> str:
+    """Digits beside a mark, where there is room; else the mark's tip alone has them."""
+    for dx, dy, anchor in _PLACES if text else ():
+        width = _DIGIT_WIDTH * len(text)
+        left = x + dx - (width if anchor == "end" else 0)
+        box = (left, y + dy - _DIGIT_HEIGHT, left + width, y + dy)
+        inside = box[0] >= _LEFT and box[2] <= _WIDTH - _RIGHT and box[1] >= _TOP and box[3] <= _PLOT_HEIGHT
+        apart = all(box[2] <= b[0] or b[2] <= box[0] or box[3] <= b[1] or b[3] <= box[1] for b in taken)
+        if inside and apart:
+            taken.append(box)
+            place = f'x="{x + dx:.1f}" y="{y + dy:.1f}" text-anchor="{anchor}"'
+            return f'<text class="small" {place}>{escape(text)}</text>'
+    return ""
+
+
+def _point(point: Point, x: float, y: float, across: _Axis, up: _Axis, index: int, label: str) -> str:
     bars = []
     if point.x_range is not None:
         low, high = (across.at(end) for end in point.x_range)
@@ -203,12 +223,6 @@ def _point(point: Point, x: float, y: float, across: _Axis, up: _Axis, index: in
         bars.append(f'<path class="bar" d="M{x:.1f} {low:.1f}V{high:.1f}"/>')
     dominated = ' class="dominated"' if point.is_dominated else ""
     tip = f"<title>{escape(point.tip)}</title>" if point.tip else ""
-    label = ""
-    if point.label:
-        dx, dy, anchor = _LABELS[index % len(_LABELS)]
-        label = (
-            f'<text class="small" x="{x + dx:.1f}" y="{y + dy:.1f}" text-anchor="{anchor}">{escape(point.label)}</text>'
-        )
     return f"<g{dominated}>{tip}{''.join(bars)}{_mark(index, x, y)}{label}</g>"
 
 

@@ -13,6 +13,7 @@ from softshadow.errors import SettingsError
 Line = dict[str, Any]
 
 _RATIO = ("scene", "size", "name", "over", "under", "asked", "published", "median", "range", "penumbra_rmse")
+_ABSENT = ("scene", "size", "case", "reason")
 _PEER = ("scene", "size", "tracer", "samples", "ours", "times_ms", "rmse", "is_slow", "reference_standard_error")
 
 
@@ -42,6 +43,11 @@ def read_lines(path: str | os.PathLike[str]) -> list[Line]:
 def ratios_of(lines: Iterable[Line]) -> list[Line]:
     """Ratios, as they are."""
     return [_picked("ratio", line, _RATIO) for line in lines if line["kind"] == "ratio"]
+
+
+def absent_of(lines: Iterable[Line]) -> list[Line]:
+    """What could not be measured, and why."""
+    return [_picked(line["kind"], line, _ABSENT) for line in lines if line["kind"] in ("skip", "failure")]
 
 
 def peers_of(lines: Iterable[Line]) -> list[dict[str, Any]]:

@@ -19,7 +19,7 @@ from softshadow.errors import OutputError, SettingsError
 
 from .charts import alone
 from .fronts import front
-from .lines import Line, peers_of, ratios_of
+from .lines import Line, absent_of, peers_of, ratios_of
 from .page import page
 
 _SCALE = 2.5
@@ -39,7 +39,8 @@ class Report:
         More of them that serve as points of growth curves alone.
     lines : list of dict
         Lines of :func:`read_lines`: other tracers of ``python -m softshadow.bench.peers --json FILE``, published ratios
-        of ``softshadow-bench --ratios --json FILE``. Lines of other kinds are left out.
+        of ``softshadow-bench --ratios --json FILE``, and what was skipped or failed there. Lines of other kinds are
+        left out.
     title : str
         The heading.
 
@@ -80,6 +81,7 @@ class Report:
             "growth": [comparison.to_dict() for comparison in self.growth],
             "peers": peers_of(self.lines),
             "ratios": ratios_of(self.lines),
+            "absent": absent_of(self.lines),
         }
 
     def to_html(self) -> str:

@@ -27,6 +27,7 @@ def summary(document: dict[str, Any], numbers: Numbers) -> str:
             _levels(comparisons, numbers),
             _beaten(comparisons, judged),
             *_noise(document),
+            _absent(document["absent"]),
             "</section>",
         ]
     )
@@ -176,3 +177,14 @@ def _noise(document: dict[str, Any]) -> list[str]:
             "busy, and small ratios mean nothing."
         )
     return [f'<p class="{"warning" if 3 * busy > len(rows) else "note"}">{words}</p>']
+
+
+def _absent(lines: list[dict[str, Any]]) -> str:
+    """Nothing that was not measured goes without a word."""
+    if not lines:
+        return ""
+    items = []
+    for line in lines:
+        what = ", ".join(filter(None, ("{}, {} × {}".format(line["scene"], *line["size"]), line["case"])))
+        items.append(f"<li>{escape(what)}: {escape(line['reason'])}</li>")
+    return f"<h3>Not measured</h3><ul>{''.join(items)}</ul>"
