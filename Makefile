@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 # Mesa's device-selection layer complains on stderr where there is no desktop session; the library chooses the device itself.
 export VK_LOADER_LAYERS_DISABLE := VK_LAYER_MESA_device_select
 
-.PHONY: help setup driver venv extension demo gallery test test-rust test-python lint bench evidence clean
+.PHONY: help setup driver browser venv extension demo gallery test test-rust test-python lint bench evidence clean
 
 help:
 	@echo "make demo      render the demonstration scene; says where the picture and the numbers are"
@@ -28,6 +28,13 @@ driver: extension
 	  $$sudo apt-get update -qq && \
 	  $$sudo apt-get install -y -qq mesa-vulkan-drivers libvulkan1 libegl1 libgl1-mesa-dri; \
 	else echo "no Vulkan adapter found: install a driver, for example Mesa's lavapipe"; fi
+
+# Reports are opened in it by tests, which without it are skipped.
+browser:
+	@if command -v chromium chromium-browser google-chrome >/dev/null; then :; elif command -v apt-get >/dev/null; then \
+	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); \
+	  $$sudo apt-get update -qq && $$sudo apt-get install -y -qq --no-install-recommends chromium; \
+	else echo "no browser found: install Chromium"; fi
 
 venv: $(VENV)/.made
 

@@ -161,7 +161,9 @@ mod tests {
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();
         assert_eq!(pixels.as_chunks::<3>().0, [0, 1, 1, 0, 0, 1].map(|place: usize| palette[place]));
-        for (places, colors, size) in [(&[0, 2][..], 2, [2, 1]), (&[0], 2, [2, 1]), (&[], 0, [1, 1]), (&[0], 257, [1, 1])] {
+        for (places, colors, size) in
+            [(&[0, 2][..], 2, [2, 1]), (&[0], 2, [2, 1]), (&[], 0, [1, 1]), (&[0], 257, [1, 1])]
+        {
             assert!(png_palette8_bytes(places, &vec![[0; 3]; colors], size).is_err(), "{places:?} of {colors}");
         }
     }
