@@ -192,9 +192,7 @@ def test_the_fastest_for_an_error_is_among_those_that_reach_it():
 def test_the_first_screen_says_who_is_dominated_and_where_we_are_behind():
     html = full().to_html()
     first = html[html.index('id="summary"') : html.index("<h2>", html.index("<h2>", html.index('id="summary"')) + 1)]
-    assert (
-        "<b>hard_shadow_map</b> is dominated at every setting in" in first or "hard_shadow_map</b> is nowhere" in first
-    )
+    assert re.search("<b>hard_shadow_map</b> is dominated (at every setting|nowhere) in ", first)
     assert "Where we are behind another tracer" in first
     behind = re.findall(r'<li class="behind">(.*?)</li>', first)
     # At 0.05 ours is three times as fast; at 0.02 theirs is ahead; nobody reaches 0.01.

@@ -129,6 +129,13 @@ def test_the_divided_picture_shows_both_images(tab, page):
         })()"""
     )
     stage = tab.screenshot()[max(top, 0) : top + height, left : left + width].astype(int)
+    assert tab.evaluate(
+        """(() => {
+          const [left, right] = [...document.querySelectorAll('.viewer[data-name=card] .stage img')];
+          const [a, b] = [left, right].map(image => JSON.stringify(image.getBoundingClientRect()));
+          return a === b;
+        })()"""
+    ), "they lie over each other"
     half = width // 2
     colored = (np.abs(stage[..., 0] - stage[..., 2]) > 40).mean(axis=0)
     assert colored[: half - 8].max() == 0, "the reference is grey"
