@@ -198,7 +198,9 @@ def test_the_first_screen_says_who_is_dominated_and_where_we_are_behind():
     # At 0.05 ours is three times as fast; at 0.02 theirs is ahead; nobody reaches 0.01.
     assert len(behind) == 1
     assert "RMSE ≤ 0.02" in behind[0]
-    assert "1.33 times as long" in behind[0]
+    assert "1.33 times as long." in behind[0]
+    noisy = [*PEERS[:2], peer("Theirs", 64, 38, 0.012)]
+    assert "1.05 times as long, within noise." in replace(full(), lines=noisy).to_html()
     ahead = replace(full(), lines=[peer("ours", 16, 10, 0.004, ours=True), peer("Theirs", 64, 30, 0.012)]).to_html()
     assert "Behind no other tracer in card" in ahead
     alone = replace(full(), lines=[peer("ours", 16, 10, 0.04, ours=True), peer("Theirs", 64, 30, 0.012)]).to_html()

@@ -32,7 +32,7 @@ from softshadow.visibility import visibility
 
 from .scenes import Measured, find
 
-REFERENCE = RayTraced(samples=256, passes=4, pattern="low_discrepancy", seed=99)
+REFERENCE = RayTraced(samples=256, passes=8, pattern="low_discrepancy", seed=99)
 GROWING: tuple[Technique, ...] = (RayTraced(samples=64), DepthComplexity(samples=64))
 """What growth is shown of."""
 _SCALES = (0.5, 2.0)

@@ -53,20 +53,23 @@ def ratios(measured: Sequence[dict[str, Any]], numbers: Numbers) -> str:
     for index, ratio in enumerate(measured):
         at = f"/ratios/{index}"
         scene = "{}, {} × {}".format(ratio["scene"], *ratio["size"])
-        words = (scene, *(ratio[name] for name in ("name", "over", "under", "published", "asked")))
+        settings = f"{escape(ratio['over'])}<br>over {escape(ratio['under'])}"
         lines.append(
             [
-                *map(escape, words),
+                escape(scene),
+                f"{escape(ratio['name'])}<br><small>{settings}</small>",
+                escape(ratio["published"]),
+                escape(ratio["asked"]),
                 numbers(f"{at}/median", "ratio"),
                 f"{numbers(f'{at}/range/0', 'ratio')} … {numbers(f'{at}/range/1', 'ratio')}",
                 numbers(f"{at}/penumbra_rmse/0", "error"),
                 numbers(f"{at}/penumbra_rmse/1", "error"),
             ]
         )
-    head = ["scene", "ratio", "time of", "over that of", "published", "asked", "ours", "from … to", "RMSE of", "over"]
+    head = ["scene", "times of", "published", "asked", "ours", "from … to", "RMSE of", "over"]
     explained = (
         "Times of two settings over each other, turn by turn in one run of <code>softshadow-bench</code>. Published "
         "are those of Forest, Barthe and Paulin (2008) on the hardware of their day; asked is what this project asks "
         "of itself."
     )
-    return section("ratios", "Published ratios beside ours", note(explained), table("Ratios", head, lines, words=6))
+    return section("ratios", "Published ratios beside ours", note(explained), table("Ratios", head, lines, words=4))

@@ -92,6 +92,7 @@ def _statements(comparisons: list[dict[str, Any]], judged: list[list[Dominated |
         clauses = [f"{where} in {_listed(titles)}" for where, titles in sorted(places.items())]
         sure, judged_so = sum(counts[name]), len(counts[name])
         doubt = f" ({sure} of {judged_so} surely, the others within noise)" if sure < judged_so else ""
+        doubt = " (all within noise)" if judged_so and not sure else doubt
         sentences.append(f"<li><b>{escape(name)}</b> is dominated {escape('; '.join(clauses))}{doubt}.</li>")
     return f"<ul>{''.join(sentences)}</ul>" if sentences else "<p>No scene has a penumbra: nothing to judge.</p>"
 
@@ -160,7 +161,10 @@ def _lost(run: dict[str, Any], level: float, at: str, numbers: Numbers) -> str:
     if ours is None:
         return f"{place}: {words(theirs)}; none of ours gets there."
     ratio = rows[ours]["median_ms"] / rows[theirs]["median_ms"]
-    return f"{place}: {words(theirs)}, our {words(ours)}: {ratio:.2f} times as long." if ratio > 1 else ""
+    if ratio <= 1:
+        return ""
+    doubt = "" if rows[theirs]["range_ms"][1] < rows[ours]["range_ms"][0] else ", within noise"
+    return f"{place}: {words(theirs)}, our {words(ours)}: {ratio:.2f} times as long{doubt}."
 
 
 def _noise(document: dict[str, Any]) -> list[str]:
