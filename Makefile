@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 # Mesa's device-selection layer complains on stderr where there is no desktop session; the library chooses the device itself.
 export VK_LOADER_LAYERS_DISABLE := VK_LAYER_MESA_device_select
 
-.PHONY: help setup driver venv tools extension demo gallery test test-rust test-python package fuzz lint docs bench evidence clean
+.PHONY: help setup driver browser venv tools extension demo gallery test test-rust test-python package fuzz lint docs bench evidence clean
 
 help:
 	@echo "make demo      render the demonstration scene; says where the picture and the numbers are"
@@ -17,7 +17,7 @@ help:
 	@echo "make fuzz      a minute of hostile input for each reader and for settings, two at a time"
 	@echo "make lint      formatting, clippy, ruff, mypy, stubs"
 	@echo "make docs      reference of the Python package, from its docstrings; docs/softshadow.html"
-	@echo "make bench     time, bytes and error of the techniques, and the papers' ratios, in a few minutes"
+	@echo "make bench     time, bytes and error of the techniques, and the papers' ratios, in a few minutes; bench/report/index.html"
 	@echo "make evidence  heavy checks against other renderers, with meshes; writes EVIDENCE.md"
 
 setup: extension driver
@@ -31,6 +31,13 @@ driver: extension
 	  $$sudo apt-get update -qq && \
 	  $$sudo apt-get install -y -qq mesa-vulkan-drivers libvulkan1 libegl1 libgl1-mesa-dri; \
 	else echo "no Vulkan adapter found: install a driver, for example Mesa's lavapipe"; fi
+
+# Reports are opened in it by tests, which without it are skipped.
+browser:
+	@if command -v chromium chromium-browser google-chrome >/dev/null; then :; elif command -v apt-get >/dev/null; then \
+	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); \
+	  $$sudo apt-get update -qq && $$sudo apt-get install -y -qq --no-install-recommends chromium; \
+	else echo "no browser found: install Chromium"; fi
 
 venv: $(VENV)/.made
 
@@ -93,9 +100,11 @@ docs: extension
 	@echo "reference docs/softshadow.html"
 
 # More scenes, sizes and settings: target/release/softshadow-bench --help
-bench:
+bench: extension
 	cargo build --release --package softshadow_bench --quiet
-	target/release/softshadow-bench --ratios
+	mkdir -p bench
+	target/release/softshadow-bench --ratios --json bench/lines.jsonl
+	$(BIN)/python -m softshadow.bench.report --output bench/report --lines bench/lines.jsonl
 
 # Other renderers are large; they are wanted only here.
 evidence: setup tools
@@ -106,4 +115,4 @@ evidence: setup tools
 
 clean:
 	cargo clean
-	rm -rf $(VENV) demo dist docs
+	rm -rf $(VENV) demo bench dist docs

@@ -19,10 +19,12 @@ __all__ = [
     "load_scene_file",
     "look_at",
     "png_grey16",
+    "png_palette8",
     "png_srgb8",
     "render",
     "shipped_names",
     "shipped_scene",
+    "svg_png",
     "technique_defaults",
     "visibility",
 ]
@@ -54,6 +56,11 @@ class _PictureArrays(TypedDict):
     linear: NDArray[np.float32]
     srgb: NDArray[np.uint8]
     visibility: _VisibilityArrays
+
+class _ComparisonArrays(TypedDict):
+    measured: str
+    reference_values: NDArray[np.float32]
+    values: list[NDArray[np.float32]]
 
 class _LightPointArrays(TypedDict):
     parameters: NDArray[np.float32]
@@ -159,6 +166,8 @@ def shipped_scene(name: str) -> _ShippedScene: ...
 def load_scene_file(path: str) -> _SceneFile: ...
 def png_grey16(values: NDArray[np.float32], size: tuple[int, int]) -> bytes: ...
 def png_srgb8(colors: NDArray[np.uint8], size: tuple[int, int]) -> bytes: ...
+def png_palette8(places: NDArray[np.uint8], palette: NDArray[np.uint8], size: tuple[int, int]) -> bytes: ...
+def svg_png(svg: str, scale: float) -> bytes: ...
 def exr(channels: Sequence[tuple[str, NDArray[np.float32]]], size: tuple[int, int], info: str) -> bytes: ...
 def visibility(
     context: Context,
@@ -200,7 +209,7 @@ def compare(
     reference: str,
     repeats: int,
     progress: _Progress | None,
-) -> str: ...
+) -> _ComparisonArrays: ...
 def light_points(
     scene: Scene,
     light: Light,

@@ -1,4 +1,4 @@
-"""The command line: ``softshadow render``, ``visibility``, ``gallery`` and ``doctor``."""
+"""The command line: ``softshadow render``, ``visibility``, ``compare``, ``gallery`` and ``doctor``."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import Any
 
 from . import __version__, scenes
 from .camera import Camera
+from .cli_compare import add_compare, run_compare
 from .cli_values import parse_camera, parse_light, parse_size, parse_technique
 from .device import quiet_driver
 from .diagnosis import doctor
@@ -30,7 +31,7 @@ _EPILOG = """\
 SCENE is a .glb, .gltf, .obj, .ply or .stl file, a scene.json with lights and a camera, or the name of a shipped scene:
 {names}. Options go before what a scene brings along.
 
-FILE is a .png, .npy, .npz, .csv or .exr.
+FILE is a .png, .npy, .npz, .csv or .exr. FOLDER is made where there is none.
 
 lights       rect:width=1,height=1,position=1.5/3.5/1,target=0/0.3/0   disc:radius=…   sphere:radius=…
              sun:azimuth=120,elevation=40,diameter=0.53,up=y           each with radiance=1/1/1
@@ -90,6 +91,15 @@ def _parser() -> argparse.ArgumentParser:
     gallery_command.add_argument("--size", type=parse_size, default=Studio.size, metavar="WxH", help="of a picture")
     _add_device_and_json(gallery_command)
     gallery_command.set_defaults(run=_gallery)
+    compare_command = commands.add_parser(
+        "compare",
+        help="measure techniques against a reference: a page, numbers and fronts",
+        description="measure techniques against a reference, and write a page that stands alone, numbers and fronts",
+        epilog=_EPILOG.format(names=", ".join(scenes.names())),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_compare(compare_command)
+    compare_command.set_defaults(run=_compare)
     doctor_command = commands.add_parser("doctor", help="show adapters and what is missing")
     doctor_command.add_argument("--json", action="store_true", help="print JSON")
     doctor_command.set_defaults(run=_doctor)
@@ -129,6 +139,11 @@ def _gallery(options: argparse.Namespace) -> int:
         print(json.dumps(made, indent=2))
     _say(f"page {made['page']}, on {made['device']}")
     return 0
+
+
+def _compare(options: argparse.Namespace) -> int:
+    scene, lights, camera = _scene_lights_camera(options)
+    return run_compare(options, scene, lights, camera, _say, _say_progress)
 
 
 def _doctor(options: argparse.Namespace) -> int:

@@ -18,6 +18,7 @@
 
 mod compare;
 mod context;
+pub mod drawing;
 mod error;
 pub mod image_file;
 mod info;
@@ -26,7 +27,7 @@ mod render;
 mod scene_cache;
 mod visibility;
 
-pub use compare::{Comparison, ComparisonRow, compare};
+pub use compare::{ComparedLight, Comparison, ComparisonRow, compare};
 pub use context::{Context, DeviceChoice, adapters};
 pub use error::Error;
 pub use info::{Info, Preparation};

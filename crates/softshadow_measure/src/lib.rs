@@ -38,7 +38,7 @@ pub use closed_form::{
 };
 pub use error::MeasureError;
 pub use exact_union::{RectangleLight, rectangle_visibility};
-pub use metrics::{ErrorReport, ReferenceImage, RegionError, compare};
+pub use metrics::{ErrorReport, ReferenceImage, RegionError, compare, true_error_interval};
 pub use occlusion_tracer::OcclusionTracer;
 pub use ray_reference::projected_grazing::{ProjectedSample, ProjectedView, grazing, needed_roundings};
 pub use ray_reference::{RayReference, SampleVerdict};

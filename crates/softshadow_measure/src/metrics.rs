@@ -165,6 +165,15 @@ pub fn compare(estimate: &[f32], reference: &ReferenceImage<'_>) -> Result<Error
     })
 }
 
+/// Where the error against the truth lies, given that against a reference whose own error has the root mean square
+/// `standard_error` over the same pixels: both norms differ by the reference's at most, whatever the errors have in common, and two
+/// standard errors leave it room. Holds for root mean square and mean absolute errors.
+#[must_use]
+pub fn true_error_interval(measured: f64, standard_error: f64) -> [f64; 2] {
+    let room = 2.0 * standard_error;
+    [(measured - room).max(0.0), measured + room]
+}
+
 fn fraction(pixels: &[usize], holds: impl Fn(usize) -> bool) -> Option<f64> {
     let count = pixels.iter().filter(|&&pixel| holds(pixel)).count();
     (!pixels.is_empty()).then(|| count as f64 / pixels.len() as f64)

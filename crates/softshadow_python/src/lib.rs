@@ -30,7 +30,7 @@ mod _core {
     #[pymodule_export]
     use super::context::{Context, adapters};
     #[pymodule_export]
-    use super::image::{exr, png_grey16, png_srgb8};
+    use super::image::{exr, png_grey16, png_palette8, png_srgb8, svg_png};
     #[pymodule_export]
     use super::light::Light;
     #[pymodule_export]
