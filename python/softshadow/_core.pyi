@@ -175,6 +175,24 @@ def visibility(
     sample_masks: bool,
     progress: _Progress | None,
 ) -> _VisibilityArrays: ...
+def visibility_within(
+    context: Context,
+    scene: Scene,
+    lights: list[Light],
+    *,
+    camera: Camera | None,
+    points: NDArray[np.float64] | None,
+    normals: NDArray[np.float64] | None,
+    max_error: float | None,
+    max_ms: float | None,
+    error_norm: str,
+    confidence: float | None,
+    memory_limit: int | None,
+    standard_error: bool,
+    receivers: bool,
+    progress: _Progress | None,
+) -> tuple[_VisibilityArrays, str | None]: ...
+def cache_folder() -> Path | None: ...
 def render(
     context: Context,
     scene: Scene,

@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,7 @@ from . import _core
 from .camera import Camera
 from .checks import floats, memory_limit_bytes
 from .device import Device, announce, context
-from .errors import SceneError, SettingsError
+from .errors import BoundNotMet, SceneError, SettingsError
 from .files import output_format, write, write_csv, write_npz
 from .lights import Light, built_lights
 from .result_files import arrays_of, channels_of, columns_of, names_of
@@ -24,6 +24,10 @@ from .techniques import DepthComplexity, RayTraced, Technique, technique_json
 
 Progress = Callable[[int, int], object]
 """Called with ``(done, total)`` between blocks; returning ``False`` stops the work with ``Interrupted``."""
+
+
+ErrorNorm = Literal["rmse", "p99", "max"]
+"""How errors are measured: root mean square, 99th percentile or largest."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -137,7 +141,11 @@ def visibility(
     camera: Camera | None = None,
     points: ArrayLike | None = None,
     normals: ArrayLike | None = None,
-    technique: Technique = RayTraced(),  # noqa: B008 - frozen
+    technique: Technique | None = None,
+    max_error: float | None = None,
+    max_ms: float | None = None,
+    error_norm: ErrorNorm = "rmse",
+    confidence: float | None = None,
     device: Device | str = "auto",
     memory_limit: int | None = None,
     progress: Progress | None = None,
@@ -161,7 +169,18 @@ def visibility(
         For each point, of any length but zero: light from below the horizon is then not visible. A flat light
         is never visible from behind.
     technique : RayTraced, DepthComplexity or HardShadowMap
-        How it is computed.
+        How it is computed; ``RayTraced()`` unless an error or a time is asked for.
+    max_error : float, optional
+        Takes the fastest technique and settings that keep this error for this scene, instead of `technique`. The
+        result is checked against rays at random receivers; ``info["choice"]`` says how it was chosen, what it reaches,
+        and how that is known: ``certified``, ``statistical`` or ``measured``.
+    max_ms : float, optional
+        Takes the smallest error within so many milliseconds instead, check included.
+    error_norm : {"rmse", "p99", "max"}
+        How errors are measured, over the penumbra and whatever else is wrong by more than 1/255. The largest error can
+        be estimated, and the share of receivers beyond it bounded; promised it cannot be.
+    confidence : float, optional
+        Of statistical bounds; 0.95 unless given.
     device : {"auto", "gpu", "native", "software"} or int
         ``"auto"`` takes a graphics card, else the processor without any driver (``"native"``), and a software driver
         for what draws triangles; the environment variable ``SOFTSHADOW_DEVICE`` overrides it. A number is an index in
@@ -190,30 +209,65 @@ def visibility(
         For options out of range.
     NoAdapterError, GpuError
         Where no device fits, or it fails.
+    BoundNotMet
+        Where nothing keeps `max_error` or `max_ms`; its `best` is the result that comes closest.
     Interrupted
         When `progress` returned ``False``.
     """
     built, several = built_lights(lights)
     where = receivers_of(camera, points, normals)
-    decides_all = isinstance(technique, DepthComplexity) or (isinstance(technique, RayTraced) and technique.probes == 0)
-    if sample_masks and not decides_all:
-        raise SettingsError("sample_masks: only RayTraced without probes and DepthComplexity decide every sample")
     given, names = where.points, names_of(lights if isinstance(lights, Sequence) else [lights])
-    arrays = _core.visibility(
-        context(device),
-        scene_of(scene),
-        built,
+    leading = (len(built),) if several else ()
+    common: dict[str, Any] = {
         **where.arguments,
-        technique=technique_json("technique", technique),
-        memory_limit=memory_limit_bytes(memory_limit),
-        standard_error=bool(standard_error),
-        receivers=bool(receivers),
-        sample_masks=bool(sample_masks),
-        progress=callback(progress),
-    )
-    result = shaped(arrays, (len(built),) if several else (), where.shape, names, given)
+        "memory_limit": memory_limit_bytes(memory_limit),
+        "standard_error": bool(standard_error),
+        "receivers": bool(receivers),
+        "progress": callback(progress),
+    }
+    if max_error is not None or max_ms is not None:
+        goal = _goal(technique, max_error, max_ms, error_norm, confidence, sample_masks)
+        arrays, reason = _core.visibility_within(context(device), scene_of(scene), built, **common, **goal)
+        result = shaped(arrays, leading, where.shape, names, given)
+        if reason is not None:
+            unmet = BoundNotMet(reason)
+            unmet.best = result
+            raise unmet
+    else:
+        technique = RayTraced() if technique is None else technique
+        is_ray_traced = isinstance(technique, RayTraced) and technique.probes == 0
+        if sample_masks and not (is_ray_traced or isinstance(technique, DepthComplexity)):
+            raise SettingsError("sample_masks: only RayTraced without probes and DepthComplexity decide every sample")
+        arrays = _core.visibility(
+            context(device),
+            scene_of(scene),
+            built,
+            **common,
+            technique=technique_json("technique", technique),
+            sample_masks=bool(sample_masks),
+        )
+        result = shaped(arrays, leading, where.shape, names, given)
     announce(device, result.info["adapter"])
     return result
+
+
+def _goal(
+    technique: Technique | None,
+    max_error: float | None,
+    max_ms: float | None,
+    error_norm: str,
+    confidence: float | None,
+    sample_masks: bool,
+) -> dict[str, Any]:
+    """What is asked for instead of a technique."""
+    if technique is not None:
+        raise SettingsError("technique: max_error and max_ms choose it; leave it out")
+    if sample_masks:
+        raise SettingsError("sample_masks: a technique that is chosen may have none; name one")
+    if not isinstance(error_norm, str):
+        raise SettingsError(f"error_norm: 'rmse', 'p99' or 'max' expected, got {error_norm!r}")
+    numbers = {"max_error": max_error, "max_ms": max_ms, "confidence": confidence}
+    return {name: None if x is None else number(name, x) for name, x in numbers.items()} | {"error_norm": error_norm}
 
 
 @dataclass(frozen=True)

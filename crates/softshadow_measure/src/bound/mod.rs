@@ -175,7 +175,9 @@ pub fn bound_error(
     let mean = |of: &dyn Fn(&Drawn) -> f64| counted().map(|(weight, d)| weight * of(d)).sum::<f64>() / weights;
     let noise = mean(&|d| d.standard_error * d.standard_error);
     found.reference_standard_error = noise.sqrt();
-    let effective = weights * weights / squares;
+    // Who draws nearly all leaves little to chance.
+    let left = (1.0 - receivers as f64 / weights).max(f64::MIN_POSITIVE);
+    let effective = weights * weights / squares / left;
     let is_census = strata.iter().all(|s| s.drawn.len() == s.size);
     let share_beyond = |limit: f64| {
         let share = mean(&|d| f64::from(u8::from(d.may_exceed(limit))));
