@@ -1,4 +1,5 @@
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TypedDict, final
 
 import numpy as np
@@ -11,6 +12,7 @@ __all__ = [
     "Scene",
     "__version__",
     "adapters",
+    "cache_folder",
     "check_technique",
     "compare",
     "default_material",
@@ -25,6 +27,7 @@ __all__ = [
     "shipped_scene",
     "technique_defaults",
     "visibility",
+    "visibility_within",
 ]
 
 __version__: str

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .camera import Camera
-from .checks import floats, memory_limit_bytes
+from .checks import floats, memory_limit_bytes, real
 from .device import Device, announce, context
 from .errors import BoundNotMet, SceneError, SettingsError
 from .files import output_format, write, write_csv, write_npz
@@ -267,7 +267,8 @@ def _goal(
     if not isinstance(error_norm, str):
         raise SettingsError(f"error_norm: 'rmse', 'p99' or 'max' expected, got {error_norm!r}")
     numbers = {"max_error": max_error, "max_ms": max_ms, "confidence": confidence}
-    return {name: None if x is None else number(name, x) for name, x in numbers.items()} | {"error_norm": error_norm}
+    checked = {name: None if x is None else real(name, x, SettingsError) for name, x in numbers.items()}
+    return checked | {"error_norm": error_norm}
 
 
 @dataclass(frozen=True)

@@ -129,6 +129,11 @@ impl Candidates {
         self.all.iter().enumerate().filter(|(_, c)| c.refused.is_none() && c.wall_ms.is_none())
     }
 
+    /// What the fastest should take.
+    pub(super) fn least_predicted(&self) -> f64 {
+        self.fastest().map_or(0.0, |candidate| candidate.predicted_ms)
+    }
+
     pub(super) fn fastest(&self) -> Option<&Candidate> {
         self.open().map(|(_, c)| c).min_by(|a, b| a.predicted_ms.total_cmp(&b.predicted_ms))
     }

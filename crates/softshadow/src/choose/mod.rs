@@ -4,9 +4,9 @@
 //! 1. **Candidates** are the settings that techniques list in rising quality ([`Technique::rising_quality`]).
 //! 2. **Costs** are predicted from their plans and a calibration of the device ([`calibration`]), corrected by what the same scene has cost
 //!    before.
-//! 3. **A pilot** ([`pilot`]) lets one setting of each technique do a random part of the receivers: it says what this scene costs, and how
-//!    wrong the technique is here against rays. It runs where it is expected to take less than a third of the run that follows; else the
-//!    choice is safe: among techniques whose error follows from their samples, with a larger margin.
+//! 3. **A pilot** ([`pilot`]) lets one setting of each technique do a random part of the receivers: it says what this scene costs, and, where
+//!    there is time for rays, how wrong the technique is here. Each part of it runs where all together are expected to take less than a third
+//!    of the run that follows; else the choice is safe: among techniques whose error follows from their samples, with a larger margin.
 //! 4. **The run.**
 //! 5. **A check** ([`check`]): receivers drawn at random from the result itself are traced, each with samples of its own, and bound its
 //!    error. Nothing that led to the choice enters here, so nothing has to be corrected for how many candidates there were; only checks
@@ -152,7 +152,7 @@ pub struct BoundNotMet {
 
 /// Margin between what a candidate is expected to err and the bound: a check must confirm it from few receivers.
 const MARGIN: f64 = 1.15;
-/// The same where nothing was measured on this scene.
+/// The same where no error was measured on this scene before.
 const SAFE_MARGIN: f64 = 1.35;
 /// Runs at most: each is chosen with what the one before has shown.
 const MOST_RUNS: usize = 4;
@@ -253,7 +253,7 @@ impl<'a> Search<'a> {
         let mut candidates = Candidates::of(call)?;
         let began = Instant::now();
         let pilot = pilot::pilot(call, &mut candidates, on_progress)?;
-        let margin = if pilot.is_skipped { SAFE_MARGIN } else { MARGIN };
+        let margin = if pilot.has_errors { MARGIN } else { SAFE_MARGIN };
         let pilot_ms = if pilot.is_skipped { 0.0 } else { began.elapsed().as_secs_f64() * 1e3 };
         Ok(Self {
             call,
@@ -347,6 +347,7 @@ impl<'a> Search<'a> {
             size = large;
         };
         self.candidates.measured(index, error.estimate);
+        self.margin = MARGIN;
         let met = match call.goal.limit {
             Limit::MaxError(_) => met,
             Limit::MaxMs(ms) => self.started.elapsed().as_secs_f64() * 1e3 <= ms,
