@@ -15,8 +15,8 @@ fn calibration() -> String {
     let context = Context::new(&DeviceChoice::Native).unwrap();
     let (scene, goal) = (described.build().unwrap(), Goal::max_error(0.3, ErrorNorm::Rmse));
     let receivers = Receivers::Camera(camera);
-    let seen =
-        visibility_within(&context, &scene, &[light], &receivers, &goal, &Options::default(), &mut |_, _| true).unwrap();
+    let seen = visibility_within(&context, &scene, &[light], &receivers, &goal, &Options::default(), &mut |_, _| true)
+        .unwrap();
     seen.info.choice.unwrap().calibration
 }
 

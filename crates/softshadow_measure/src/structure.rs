@@ -41,7 +41,8 @@ pub(crate) fn structure(estimate: &[f32], truth: &[f32], width: usize) -> Option
         let (mut sum, mut count) = (0.0, 0_usize);
         for y in REACH..height as i32 - REACH {
             for x in REACH..width as i32 - REACH {
-                let (pixel, moved) = ((y * width as i32 + x) as usize, ((y + down) * width as i32 + x + right) as usize);
+                let (pixel, moved) =
+                    ((y * width as i32 + x) as usize, ((y + down) * width as i32 + x + right) as usize);
                 let error = f64::from(estimate[moved]) - f64::from(truth[pixel]);
                 if !error.is_nan() {
                     (sum, count) = (sum + error * error, count + 1);

@@ -138,9 +138,9 @@ pub(crate) fn visibility_within<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(VisibilityArrays<'py>, Option<String>)> {
     let (context, scene, lights) = (context.get().get()?, &scene.get().0, lights_of(&lights));
-    let norm: ErrorNorm = error_norm.parse().map_err(|_| {
-        settings_exception(format!("error_norm: 'rmse', 'p99' or 'max' expected, got '{error_norm}'"))
-    })?;
+    let norm: ErrorNorm = error_norm
+        .parse()
+        .map_err(|_| settings_exception(format!("error_norm: 'rmse', 'p99' or 'max' expected, got '{error_norm}'")))?;
     let limit = match (max_error, max_ms) {
         (Some(error), None) => Limit::MaxError(error),
         (None, Some(ms)) => Limit::MaxMs(ms),

@@ -86,7 +86,9 @@ impl Technique {
     #[must_use]
     pub fn expected_error(&self) -> Option<f64> {
         match self {
-            Self::RayTraced(_) | Self::DepthComplexity(_) => Some(spread::expected_error(self.samples(), self.passes())),
+            Self::RayTraced(_) | Self::DepthComplexity(_) => {
+                Some(spread::expected_error(self.samples(), self.passes()))
+            }
             Self::HardShadowMap(_) => None,
         }
     }

@@ -35,7 +35,8 @@ impl Line {
     fn through([small, large]: [(f64, f64); 2]) -> Self {
         let ms_per_unit = ((large.1 - small.1) / (large.0 - small.0).max(1.0)).max(0.0);
         // Where it does not grow, the larger is the safer guess.
-        let fixed_ms = if ms_per_unit > 0.0 { (small.1 - ms_per_unit * small.0).max(0.0) } else { small.1.max(large.1) };
+        let fixed_ms =
+            if ms_per_unit > 0.0 { (small.1 - ms_per_unit * small.0).max(0.0) } else { small.1.max(large.1) };
         Self { fixed_ms, ms_per_unit }
     }
 
@@ -281,12 +282,7 @@ fn line(lines: &Lines, kernel: &str) -> Line {
 }
 
 /// Units and milliseconds of one stage, by kernel, and of what no pass explains.
-fn by_kernel(
-    work: &[PassWork],
-    stages: usize,
-    receivers: &Receivers,
-    info: &Info,
-) -> BTreeMap<String, (f64, f64)> {
+fn by_kernel(work: &[PassWork], stages: usize, receivers: &Receivers, info: &Info) -> BTreeMap<String, (f64, f64)> {
     let mut found: BTreeMap<String, (f64, f64)> = BTreeMap::new();
     for pass in work {
         let time = info.pass_ms.iter().find(|time| time.label == pass.label).map_or(0.0, |time| time.ms);
@@ -330,7 +326,8 @@ mod tests {
         let one = Camera::look_at([1.0; 3], [0.0; 3], None, 40.0, [1, 1]).unwrap();
         let receivers = Receivers::Camera(one);
         let work = |units: f64| vec![PassWork { label: "p".into(), kernel: "k".into(), units }];
-        let ms = |units, stages, factors: &Factors| calibration.ms(&technique, &work(units), stages, &receivers, factors);
+        let ms =
+            |units, stages, factors: &Factors| calibration.ms(&technique, &work(units), stages, &receivers, factors);
         let plain = Factors::new();
         assert_eq!((ms(4.0, 1, &plain), ms(8.0, 1, &plain), ms(4.0, 3, &plain)), (3.0, 5.0, 9.0));
         assert_eq!(ms(4.0, 1, &[("k".to_owned(), 2.0)].into_iter().collect()), 6.0);

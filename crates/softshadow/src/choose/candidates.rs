@@ -156,7 +156,9 @@ impl Candidates {
         let known = self.open().filter_map(|(index, c)| Some((index, c, c.error()?)));
         match limit {
             Limit::MaxError(_) => known.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(index, ..)| index),
-            Limit::MaxMs(_) => known.min_by(|a, b| a.1.predicted_ms.total_cmp(&b.1.predicted_ms)).map(|(index, ..)| index),
+            Limit::MaxMs(_) => {
+                known.min_by(|a, b| a.1.predicted_ms.total_cmp(&b.1.predicted_ms)).map(|(index, ..)| index)
+            }
         }
     }
 

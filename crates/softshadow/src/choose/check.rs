@@ -50,9 +50,7 @@ pub(super) fn check(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Checked, Error> {
     let limit = f64::from(UMBRA_LIMIT);
-    let in_penumbra = |pair: usize| {
-        values(result, pair).any(|v| (limit..=1.0 - limit).contains(&v))
-    };
+    let in_penumbra = |pair: usize| values(result, pair).any(|v| (limit..=1.0 - limit).contains(&v));
     let pairs = (0..result.lights * result.receivers).filter(|pair| result.valid[pair % result.receivers.max(1)]);
     let (penumbra, rest): (Vec<usize>, Vec<usize>) = pairs.partition(|pair| in_penumbra(*pair));
     let mut random = Random(round.wrapping_mul(0x9E37_79B9_7F4A_7C15));
@@ -91,9 +89,8 @@ pub(super) fn check(
 pub(super) fn reference(rmse: f64, norm: ErrorNorm, seed: u32) -> Technique {
     let wanted = rmse * if norm == ErrorNorm::Rmse { 0.7 } else { 0.2 };
     let mut samples = 16;
-    let error = |samples| {
-        Technique::RayTraced(RayTraced { samples, passes: PASSES, ..RayTraced::default() }).expected_error()
-    };
+    let error =
+        |samples| Technique::RayTraced(RayTraced { samples, passes: PASSES, ..RayTraced::default() }).expected_error();
     while samples < 4096 && error(samples).is_some_and(|error| error > wanted) {
         samples *= 2;
     }

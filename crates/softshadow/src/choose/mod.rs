@@ -33,8 +33,8 @@ use crate::Progress;
 use crate::context::{Context, Device};
 use crate::error::Error;
 use crate::visibility::{Options, Visibility, run};
-use candidates::Candidates;
 pub use candidates::Candidate;
+use candidates::Candidates;
 
 /// What is asked of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

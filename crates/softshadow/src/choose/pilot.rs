@@ -38,11 +38,7 @@ fn skipped(why: String) -> Pilot {
     Pilot { is_skipped: true, has_errors: false, words: format!("none: {why}") }
 }
 
-pub(super) fn pilot(
-    call: &Call<'_>,
-    candidates: &mut Candidates,
-    on_progress: Progress<'_>,
-) -> Result<Pilot, Error> {
+pub(super) fn pilot(call: &Call<'_>, candidates: &mut Candidates, on_progress: Progress<'_>) -> Result<Pilot, Error> {
     let bound = match call.goal.limit {
         Limit::MaxError(bound) => bound / MARGIN,
         Limit::MaxMs(_) => f64::INFINITY,

@@ -121,7 +121,8 @@ fn who_draws_all_knows_all() {
 #[test]
 fn nothing_bounds_the_largest_error() {
     let (_, population) = populations().swap_remove(3);
-    let found: ErrorBound = bound_error(ErrorNorm::Max, &population.drawn(400, &mut Random::new(9)), 0.5, 0.95).unwrap();
+    let found: ErrorBound =
+        bound_error(ErrorNorm::Max, &population.drawn(400, &mut Random::new(9)), 0.5, 0.95).unwrap();
     assert_eq!(found.upper, None);
     assert!(found.estimate < population.true_norm(ErrorNorm::Max));
     // Three in four hundred.
