@@ -88,7 +88,9 @@ def _spheres(random: np.random.Generator) -> Part:
     up, turn = np.meshgrid(np.linspace(0, np.pi, rings), np.linspace(0, 2 * np.pi, around), indexing="ij")
     ball = np.stack([np.sin(up) * np.cos(turn), np.cos(up), np.sin(up) * np.sin(turn)], axis=-1).reshape(-1, 3)
     at = np.arange((rings - 1) * around).reshape(rings - 1, around)[:, :-1].ravel()
-    faces = np.concatenate([np.stack([at, at + 1, at + around], 1), np.stack([at + 1, at + around + 1, at + around], 1)])
+    faces = np.concatenate(
+        [np.stack([at, at + 1, at + around], 1), np.stack([at + 1, at + around + 1, at + around], 1)]
+    )
     places = random.uniform([-1.5, 0.3, -1.5], [1.5, 1.5, 1.5], (int(random.integers(1, 12)), 3))
     return _joined([(ball * random.uniform(0.1, 0.5) + place, faces) for place in places])
 

@@ -278,6 +278,10 @@ pub(crate) fn work(
     let Prepared { contents, occluders, .. } = device.prepare(scene, receivers, hidden)?;
     technique.check_scene(&contents)?;
     technique.check_occluders(&occluders)?;
+    let sees_nothing = matches!(receivers, Receivers::Camera(_)) && contents.local.sub_scenes.is_empty();
+    if receivers.count() == 0 || sees_nothing {
+        return Ok((Vec::new(), 0));
+    }
     let program = program(technique, &contents, lights, &occluders, source, Wants::default(), host, &options)?;
     let Some(task) = program.task(0) else { return Ok((Vec::new(), 0)) };
     let found = program.blocks[task.block].count as f64;

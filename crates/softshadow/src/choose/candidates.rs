@@ -55,12 +55,16 @@ impl Candidates {
     pub(super) fn of(call: &Call<'_>) -> Result<Self, Error> {
         let (model, calibration) = call.device.calibration()?;
         let (mut all, mut works) = (Vec::new(), Vec::new());
+        let mut first_refusal = None;
         for technique in Technique::defaults().iter().flat_map(Technique::rising_quality) {
             let found = work(call.device, call.scene, call.lights, call.receivers, &technique);
             let (work, refused) = match found {
                 Ok(work) => (work, None),
-                Err(Error::Settings(reason)) => ((Vec::new(), 0), Some(reason)),
-                Err(error @ Error::TooLarge { .. }) => ((Vec::new(), 0), Some(error.to_string())),
+                Err(error @ (Error::Settings(_) | Error::TooLarge { .. } | Error::Scene(_))) => {
+                    let reason = error.to_string();
+                    first_refusal.get_or_insert(error);
+                    ((Vec::new(), 0), Some(reason))
+                }
                 Err(error) => return Err(error),
             };
             let expected_error = technique.expected_error().map(|rmse| rmse * call.goal.over_rmse());
@@ -73,6 +77,11 @@ impl Candidates {
                 refused,
             });
             works.push(work);
+        }
+        if let Some(error) =
+            first_refusal.filter(|_| all.iter().all(|candidate: &Candidate| candidate.refused.is_some()))
+        {
+            return Err(error);
         }
         let mut candidates = Self { all, works, model, calibration };
         candidates.predict(call);

@@ -187,3 +187,71 @@ impl Random {
         from
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use softshadow_scene::{Light, LightShape, Material, Mesh, Scene};
+
+    use super::*;
+    use crate::choose::Goal;
+    use crate::{Context, DeviceChoice};
+
+    /// A square over points in a plane: umbra, penumbra and light.
+    fn scene() -> (Scene, Light, Receivers) {
+        let corners = vec![[-1.0, -1.0, 2.0], [1.0, -1.0, 2.0], [1.0, 1.0, 2.0], [-1.0, 1.0, 2.0]];
+        let mesh = Mesh::new("square", corners, vec![[0, 1, 2], [0, 2, 3]], Material::default()).unwrap();
+        let pose = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 4.0], [0.0, 0.0, 0.0, 1.0]];
+        let light = Light::new(LightShape::Rectangle { width: 1.0, height: 1.0 }, pose).unwrap();
+        let grid = |at: usize| [(at % 120) as f64 / 20.0 - 3.0, (at / 120) as f64 / 20.0 - 3.0, 0.0];
+        let places: Vec<[f64; 3]> = (0..14_400).map(grid).collect();
+        let up = vec![[0.0, 0.0, 1.0]; places.len()];
+        (Scene::new(vec![mesh]).unwrap(), light, Receivers::Points(Points::new(places, Some(up)).unwrap()))
+    }
+
+    #[test]
+    fn planted_bugs_are_found_at_random_receivers() {
+        let (scene, light, receivers) = scene();
+        let context = Context::new(&DeviceChoice::Native).unwrap();
+        let device = context.device([]).unwrap();
+        let goal = Goal::max_error(0.02, ErrorNorm::Rmse);
+        let call = Call { device, scene: &scene, lights: &[light], receivers: &receivers, goal };
+        let technique = Technique::RayTraced(RayTraced { samples: 256, ..RayTraced::default() });
+        let honest = call.run(&technique, &receivers, &Options::default(), &mut |_, _| true).unwrap();
+        let found = |result: &Visibility| check(&call, result, 400, 0.95, 1, &mut || true).unwrap().bound;
+        let plain = found(&honest);
+        assert!(plain.upper.unwrap() < 0.015 && plain.receivers >= 390, "{plain:?}");
+
+        let spoilt = |spoil: &dyn Fn(usize, f32) -> f32| {
+            let mut result = honest.clone();
+            result.values.iter_mut().enumerate().for_each(|(at, v)| *v = spoil(at, *v));
+            found(&result)
+        };
+        // A bias in the penumbra alone.
+        let bias = spoilt(&|_, v| if v > 0.01 && v < 0.97 { v + 0.03 } else { v });
+        assert!((bias.estimate - 0.03).abs() < 0.006 && bias.upper.unwrap() > 0.03, "{bias:?}");
+        // Light that leaks to one receiver of twenty in the umbra: the result says that they are lit.
+        let leak = spoilt(&|at, v| if v == 0.0 && at % 20 == 0 { 1.0 } else { v });
+        assert!(leak.upper.unwrap() > 0.05 && leak.estimate > 2.0 * plain.estimate, "{leak:?}");
+        // A shadow that lies a receiver beside its place.
+        let beside = honest.values.clone();
+        let shift = spoilt(&|at, v| beside.get(at + 1).copied().unwrap_or(v));
+        assert!(shift.estimate > 0.02 && shift.upper.unwrap() > 0.02, "{shift:?}");
+        // Penumbrae cut to eight steps.
+        let bands = spoilt(&|_, v| (v * 8.0).round() / 8.0);
+        assert!(bands.estimate > 0.02 && bands.upper.unwrap() > 0.02, "{bands:?}");
+    }
+
+    #[test]
+    fn draws_are_random_and_never_twice() {
+        let mut random = Random(1);
+        let mut counts = [0; 50];
+        for _ in 0..2000 {
+            let drawn = random.draw((0..50).collect(), 5);
+            assert!(drawn.len() == 5 && drawn.windows(2).all(|pair| pair[0] < pair[1]));
+            drawn.into_iter().for_each(|at| counts[at] += 1);
+        }
+        // 200 each, with a standard deviation of 13.4.
+        assert!(counts.iter().all(|count| (140..260).contains(count)), "{counts:?}");
+        assert_eq!(random.draw(vec![4, 7], 5), [4, 7]);
+    }
+}

@@ -1,12 +1,25 @@
 //! `visibility_within`: bounds hold on scenes that nobody has tuned for, what is out of reach is said, and what is spoilt is seen.
 
+use std::sync::OnceLock;
+
 use softshadow::measure::{ErrorNorm, ErrorReport, ReferenceImage, compare};
 use softshadow::{
-    Camera, Choice, Error, ErrorKind, Goal, Light, LightShape, Material, Mesh, Options, RayTraced, Receivers,
-    SamplePattern, Scene, Technique, Visibility, look_at, visibility_within,
+    Camera, Choice, Context, DeviceChoice, Error, ErrorKind, Goal, Light, LightShape, Material, Mesh, Options,
+    RayTraced, Receivers, SamplePattern, Scene, Technique, Visibility, look_at, visibility, visibility_within,
 };
 
-use crate::common::{Random, context, depth_complexity, lamp, ray_traced, rectangle, see, shipped, surface_points};
+use crate::common::{Random, depth_complexity, lamp, ray_traced, rectangle, shipped, surface_points};
+
+/// Natively, whatever device other tests have: one calibration, and thousands of rays a receiver.
+fn context() -> &'static Context {
+    static CONTEXT: OnceLock<Context> = OnceLock::new();
+    CONTEXT.get_or_init(|| Context::new(&DeviceChoice::Native).unwrap())
+}
+
+fn see(scene: &Scene, light: &Light, receivers: &Receivers, technique: &Technique) -> Visibility {
+    let lights = std::slice::from_ref(light);
+    visibility(context(), scene, lights, receivers, technique, &Options::default(), &mut |_, _| true).unwrap()
+}
 
 /// A scene of a kind that its seed chooses: boxes, or leaves, over a ground; any light; any view from above.
 fn held_back(seed: u64, size: [u32; 2]) -> (Scene, Light, Camera) {
@@ -53,7 +66,7 @@ fn within(scene: &Scene, light: &Light, receivers: &Receivers, goal: &Goal) -> R
 fn report(scene: &Scene, light: &Light, receivers: &Receivers, seen: &Visibility) -> ErrorReport {
     let settings =
         RayTraced { samples: 256, passes: 8, pattern: SamplePattern::LowDiscrepancy, seed: 77, ..RayTraced::default() };
-    let truth = see(scene, std::slice::from_ref(light), receivers, &Technique::RayTraced(settings));
+    let truth = see(scene, light, receivers, &Technique::RayTraced(settings));
     let image = ReferenceImage { visibility: &truth.values, standard_error: None, width: None };
     compare(&seen.values, &image).unwrap()
 }
@@ -178,6 +191,18 @@ fn points_lights_and_colours_are_served() {
 }
 
 #[test]
+fn where_nothing_is_seen_nothing_is_wrong() {
+    let (_, light, camera) = shipped("cards", [8, 6]);
+    let empty = Scene::new(vec![]).unwrap();
+    let goal = Goal::max_error(0.1, ErrorNorm::Rmse);
+    let image = within(&empty, &light, &Receivers::Camera(camera), &goal).unwrap();
+    assert!(image.values.iter().all(|v| v.is_nan()) && choice(&image).met);
+    let points = surface_points(vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], [0.0, 1.0, 0.0]);
+    let seen = within(&empty, &light, &points, &goal).unwrap();
+    assert!(choice(&seen).met && choice(&seen).error.unwrap().upper.unwrap() <= 0.1);
+}
+
+#[test]
 fn goals_that_make_no_sense_are_refused() {
     let (scene, light, camera) = shipped("cards", [8, 6]);
     let receivers = Receivers::Camera(camera);
@@ -203,7 +228,7 @@ fn settings_rise_in_quality_and_what_is_expected_of_them_is_seen() {
         assert!(rising.iter().all(|technique| technique.check().is_ok() && technique.name() == start.name()));
     }
     for technique in [ray_traced(64), depth_complexity(64)] {
-        let seen = see(&scene, std::slice::from_ref(&light), &receivers, &technique);
+        let seen = see(&scene, &light, &receivers, &technique);
         let (found, expected) =
             (ErrorNorm::Rmse.of(&report(&scene, &light, &receivers, &seen)), technique.expected_error().unwrap());
         assert!(found < 1.3 * expected && found > 0.4 * expected, "{found} for {expected}");
