@@ -207,7 +207,7 @@ mod tests {
     fn a_folder_stands_for_its_meshes_and_a_scene_file_brings_light_and_camera() {
         let folder = folder_with_a_box("listed");
         std::fs::write(folder.join("notes.txt"), "no mesh").unwrap();
-        let text = r#"{"meshes": [{"path": "box.obj"}],
+        let text = r#"{"softshadow": 1, "meshes": [{"path": "box.obj"}],
             "lights": [{"type": "RectLight", "width": 1, "height": 2, "translate": [0, 20, 0], "target": [0, 0, 0]}],
             "camera": {"eye": [9, 9, 9], "target": [6, 9, 9], "fov_y_deg": 40, "size": [640, 480]}}"#;
         std::fs::write(folder.join("room.json"), text).unwrap();
