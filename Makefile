@@ -6,6 +6,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 # Mesa's device-selection layer complains on stderr where there is no desktop session; the library chooses the device itself.
 export VK_LOADER_LAYERS_DISABLE := VK_LAYER_MESA_device_select
+# What tests measure of this machine is no user's.
+export SOFTSHADOW_CACHE ?= $(CURDIR)/target/calibrations
 
 .PHONY: help setup driver browser venv tools extension demo gallery test test-rust test-python package fuzz lint docs bench evidence clean
 

@@ -17,6 +17,7 @@ from .camera import Camera, look_at
 from .comparison import Comparison, compare
 from .diagnosis import Diagnosis, doctor
 from .errors import (
+    BoundNotMet,
     GpuError,
     GpuOutOfMemory,
     Interrupted,
@@ -40,6 +41,7 @@ from .techniques import DepthComplexity, HardShadowMap, RayTraced, Technique
 from .visibility import Visibility, visibility
 
 __all__ = [
+    "BoundNotMet",
     "Camera",
     "Comparison",
     "DepthComplexity",

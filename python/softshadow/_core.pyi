@@ -1,4 +1,5 @@
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TypedDict, final
 
 import numpy as np
@@ -11,6 +12,7 @@ __all__ = [
     "Scene",
     "__version__",
     "adapters",
+    "cache_folder",
     "check_technique",
     "compare",
     "default_material",
@@ -27,6 +29,7 @@ __all__ = [
     "svg_png",
     "technique_defaults",
     "visibility",
+    "visibility_within",
 ]
 
 __version__: str
@@ -184,6 +187,24 @@ def visibility(
     sample_masks: bool,
     progress: _Progress | None,
 ) -> _VisibilityArrays: ...
+def visibility_within(
+    context: Context,
+    scene: Scene,
+    lights: list[Light],
+    *,
+    camera: Camera | None,
+    points: NDArray[np.float64] | None,
+    normals: NDArray[np.float64] | None,
+    max_error: float | None,
+    max_ms: float | None,
+    error_norm: str,
+    confidence: float | None,
+    memory_limit: int | None,
+    standard_error: bool,
+    receivers: bool,
+    progress: _Progress | None,
+) -> tuple[_VisibilityArrays, str | None]: ...
+def cache_folder() -> Path | None: ...
 def render(
     context: Context,
     scene: Scene,

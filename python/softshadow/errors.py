@@ -1,5 +1,12 @@
 """Everything that softshadow raises. Each class also has the base that Python users expect to catch."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .visibility import Visibility
+
 
 class SoftShadowError(Exception):
     """Any error of this library; raised itself only for internal errors."""
@@ -39,6 +46,15 @@ class MissingExtra(SoftShadowError, ImportError):
 
 class MeasureError(SoftShadowError, ValueError):
     """Results that cannot be compared."""
+
+
+class BoundNotMet(SoftShadowError, RuntimeError):
+    """No technique keeps the error or the time that was asked for; `best` is the result that comes closest.
+
+    What it reaches is in ``best.info["choice"]``.
+    """
+
+    best: Visibility | None = None
 
 
 class Interrupted(SoftShadowError, RuntimeError):

@@ -10,6 +10,7 @@ use softshadow_plan::{AdapterInfo, DeviceKind, Engine};
 use softshadow_scene::{Light, Receivers, Scene};
 use softshadow_techniques::{OccluderContents, SceneContents, Technique};
 
+use crate::choose::calibration::{Calibration, Factors};
 use crate::error::Error;
 use crate::info::Preparation;
 use crate::scene_cache::SceneCache;
@@ -133,7 +134,14 @@ pub(crate) struct Device {
     scenes: Mutex<SceneCache>,
     /// Whether it does what the main device does not.
     is_stand_in: bool,
+    /// What kernels take, with words about where that comes from; made when a choice first needs it.
+    calibration: Mutex<Option<(Arc<Calibration>, String)>>,
+    /// How much more or less some scenes take, by scene and technique; the latest stand last.
+    factors: Mutex<Vec<(u64, &'static str, Factors)>>,
 }
+
+/// Scenes and techniques whose costs are remembered.
+const KEPT_FACTORS: usize = 32;
 
 /// A scene and what hides each light of a call, as the device reads them.
 pub(crate) struct Prepared {
@@ -150,7 +158,15 @@ impl Device {
         if adapter.device_type == DeviceKind::Software {
             log::warn!("'{}' is a software adapter: everything runs on the CPU", adapter.name);
         }
-        Ok(Self { opening, adapter, engine: Mutex::new(engine), scenes: Mutex::default(), is_stand_in: false })
+        Ok(Self {
+            opening,
+            adapter,
+            engine: Mutex::new(engine),
+            scenes: Mutex::default(),
+            is_stand_in: false,
+            calibration: Mutex::default(),
+            factors: Mutex::default(),
+        })
     }
 
     /// What the device is.
@@ -171,6 +187,31 @@ impl Device {
             *kept = engine(self.opening)?;
         }
         Ok(Arc::clone(&kept))
+    }
+
+    /// What kernels take on this device, and where that comes from.
+    pub(crate) fn calibration(&self) -> Result<(Arc<Calibration>, String), Error> {
+        let mut kept = lock(&self.calibration);
+        if let Some(known) = &*kept {
+            return Ok(known.clone());
+        }
+        let (made, words) = Calibration::load_or_make(self)?;
+        Ok(kept.insert((Arc::new(made), words)).clone())
+    }
+
+    /// How much more or less than calibrated a technique took on a scene; nothing where it has not run there.
+    pub(crate) fn factors(&self, scene: &Scene, technique: &str) -> Factors {
+        let kept = lock(&self.factors);
+        let found = kept.iter().find(|(topology, name, _)| *topology == scene.topology() && *name == technique);
+        found.map_or_else(Factors::new, |(_, _, factors)| factors.clone())
+    }
+
+    pub(crate) fn learn(&self, scene: &Scene, technique: &'static str, factors: Factors) {
+        let mut kept = lock(&self.factors);
+        kept.retain(|(topology, name, _)| *topology != scene.topology() || *name != technique);
+        kept.push((scene.topology(), technique, factors));
+        let surplus = kept.len().saturating_sub(KEPT_FACTORS);
+        kept.drain(..surplus);
     }
 
     /// The scene as the device reads it, and with `lights` what hides each: from the cache where it was used lately, from an earlier

@@ -6,6 +6,8 @@ use softshadow_scene::{LocalScene, Scene};
 use softshadow_techniques::Technique;
 use softshadow_techniques::depth_complexity::Evaluation;
 
+use crate::choose::Choice;
+
 /// Adapter, technique, cost, and how well the values are known.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Info {
@@ -56,10 +58,14 @@ pub struct Info {
     pub invisible_triangles: usize,
     /// What the scene's file holds that is not modelled, what the technique does not, and settings that the call could not follow.
     pub notes: Vec<String>,
-    /// `statistical`: values have a standard error. `none`: nothing is known about their error.
+    /// `statistical`: values have a standard error, or a bound holds with a confidence. `none`: nothing is known about their error. Of results
+    /// that were chosen for their error also `certified` and `measured`.
     pub error_kind: &'static str,
     /// Root mean square of the standard error over the penumbra, where there is one.
     pub standard_error: Option<f64>,
+    /// How the technique was chosen and how wrong the result is, where an error or a time was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub choice: Option<Box<Choice>>,
     /// The passes, why each is there, and what each resource weighs.
     pub plan: String,
 }

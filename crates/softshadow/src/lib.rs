@@ -16,6 +16,7 @@
 //! # Ok::<(), softshadow::Error>(())
 //! ```
 
+pub mod choose;
 mod compare;
 mod context;
 pub mod drawing;
@@ -27,6 +28,7 @@ mod render;
 mod scene_cache;
 mod visibility;
 
+pub use choose::{BoundNotMet, Candidate, Choice, ErrorKind, Goal, Limit, visibility_within};
 pub use compare::{ComparedLight, Comparison, ComparisonRow, compare};
 pub use context::{Context, DeviceChoice, adapters};
 pub use error::Error;

@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use softshadow_plan::{Content, ContentKey, RunReport, StageReport, Timing};
+use softshadow_plan::{Content, ContentKey, Host, PassWork, RunReport, StageReport, Timing};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::depth_complexity::LIST_COUNTS;
 use softshadow_techniques::depth_complexity::blended::{LARGEST_COUNTS, Largest};
@@ -14,7 +15,7 @@ use softshadow_techniques::parts::resolve::{BLOCKED, STANDARD_ERROR};
 use softshadow_techniques::parts::shading::COLOR;
 use softshadow_techniques::ray_traced::TRACE_COUNTS;
 use softshadow_techniques::{
-    Block, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
+    Block, OccluderContents, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
 };
 
 use crate::Progress;
@@ -135,10 +136,7 @@ pub(crate) fn run(
     on_progress: Progress<'_>,
 ) -> Result<(Visibility, Vec<[f32; 4]>), Error> {
     technique.check()?;
-    let source = match receivers {
-        Receivers::Camera(camera) => ReceiverSource::Camera(camera),
-        Receivers::Points(points) => ReceiverSource::Points(points),
-    };
+    let source = source_of(receivers);
     if lights.is_empty() {
         return Err(Error::Settings("at least one light is needed".into()));
     }
@@ -156,15 +154,13 @@ pub(crate) fn run(
     let hidden: &[Light] = if wants_occluders { lights } else { &[] };
     let Prepared { contents, occluders, preparation } = device.prepare(scene, receivers, hidden)?;
     technique.check_scene(&contents)?;
-    let channels = if lights.iter().any(|l| l.texture().is_some()) { 3 } else { 1 };
+    let channels = channels_of(lights);
     let mut collector = Collector::new(device, scene, lights, receivers, technique, options, &contents, channels);
     collector.result.info.preparation = preparation;
     let sees_nothing = matches!(receivers, Receivers::Camera(_)) && contents.local.sub_scenes.is_empty();
     if receivers.count() == 0 || sees_nothing {
         return Ok(collector.finish(RunReport::default()));
     }
-    let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
-    let most = receivers_per_block(technique, options, channels, picture.is_some(), &host, source.row(), &contents)?;
     if let Technique::DepthComplexity(settings) = technique {
         collector.result.info.occluder_units = occluders.iter().map(|o| settings.unit_used(o)).collect();
     }
@@ -172,17 +168,8 @@ pub(crate) fn run(
     collector.result.info.touching_triangles = touching.map(|t| t.count as usize).sum();
     collector.result.info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
     collector.result.info.triangles_behind = occluders.iter().map(|o| o.triangles_behind).sum();
-    let program = VisibilityProgram {
-        technique,
-        scene: &contents,
-        lights,
-        occluders: &occluders,
-        receivers: source,
-        blocks: blocks(source.count(), source.row(), technique.halo_rows() as usize, most),
-        channels: channels as u32,
-        wants,
-        host,
-    };
+    let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
+    let program = program(technique, &contents, lights, &occluders, source, wants, host, options)?;
     program.check()?;
     if let Some(task) = program.task(0) {
         collector.result.info.plan = program.plan(task, &[]).explain();
@@ -265,6 +252,72 @@ fn check_results(lights: usize, receivers: &Receivers, technique: &Technique, op
     Ok(())
 }
 
+/// The program of a call.
+#[expect(clippy::too_many_arguments, reason = "everything that a program is made of")]
+fn program<'a>(
+    technique: &'a Technique,
+    scene: &'a SceneContents,
+    lights: &'a [Light],
+    occluders: &'a [Arc<OccluderContents>],
+    receivers: ReceiverSource<'a>,
+    wants: Wants,
+    host: Host,
+    options: &Options,
+) -> Result<VisibilityProgram<'a>, Error> {
+    let channels = channels_of(lights);
+    let picture = wants.picture.is_some();
+    let most = receivers_per_block(technique, options, channels, picture, &host, receivers.row(), scene)?;
+    Ok(VisibilityProgram {
+        technique,
+        scene,
+        lights,
+        occluders,
+        receivers,
+        blocks: blocks(receivers.count(), receivers.row(), technique.halo_rows() as usize, most),
+        channels: channels as u32,
+        wants,
+        host,
+    })
+}
+
+/// Channels of a value: three where any light has a texture.
+fn channels_of(lights: &[Light]) -> usize {
+    if lights.iter().any(|l| l.texture().is_some()) { 3 } else { 1 }
+}
+
+/// The work of a call, pass by pass, without running it: that of its first stage, and how many such stages there are.
+pub(crate) fn work(
+    device: &Device,
+    scene: &Scene,
+    lights: &[Light],
+    receivers: &Receivers,
+    technique: &Technique,
+) -> Result<(Vec<PassWork>, usize), Error> {
+    let (source, options) = (source_of(receivers), Options::default());
+    let host = device.engine()?.host();
+    technique.check()?;
+    technique.check_call(source, lights, &host)?;
+    let hidden: &[Light] = if technique.wants_occluders() { lights } else { &[] };
+    let Prepared { contents, occluders, .. } = device.prepare(scene, receivers, hidden)?;
+    technique.check_scene(&contents)?;
+    technique.check_occluders(&occluders)?;
+    let sees_nothing = matches!(receivers, Receivers::Camera(_)) && contents.local.sub_scenes.is_empty();
+    if receivers.count() == 0 || sees_nothing {
+        return Ok((Vec::new(), 0));
+    }
+    let program = program(technique, &contents, lights, &occluders, source, Wants::default(), host, &options)?;
+    let Some(task) = program.task(0) else { return Ok((Vec::new(), 0)) };
+    let found = program.blocks[task.block].count as f64;
+    Ok((program.plan(task, &[]).work(found), program.stages()))
+}
+
+fn source_of(receivers: &Receivers) -> ReceiverSource<'_> {
+    match receivers {
+        Receivers::Camera(camera) => ReceiverSource::Camera(camera),
+        Receivers::Points(points) => ReceiverSource::Points(points),
+    }
+}
+
 /// Rays that a block may need at most, but for a block of a single row: some seconds on a slow software driver. A caller can stop
 /// between blocks.
 const RAYS_PER_BLOCK: u64 = 1 << 26;
@@ -275,7 +328,7 @@ fn receivers_per_block(
     options: &Options,
     channels: usize,
     picture: bool,
-    host: &softshadow_plan::Host,
+    host: &Host,
     row: usize,
     scene: &SceneContents,
 ) -> Result<usize, Error> {
@@ -367,6 +420,7 @@ impl<'a> Collector<'a> {
             notes: notes(scene, technique, &contents.local).into_iter().chain(device.stands_in()).collect(),
             error_kind: if has_error { "statistical" } else { "none" },
             standard_error: None,
+            choice: None,
             plan: String::new(),
         };
         let masks = sampled.filter(|_| options.sample_masks).map(|samples| {

@@ -39,6 +39,8 @@ fn a_run_measures_says_and_records() {
             "--ratios",
             "--waving",
             "2",
+            "--sweep",
+            "3",
             "--reference",
             "ray_traced:samples=64,passes=4,pattern=low_discrepancy",
             "--reference-cache",
@@ -96,6 +98,18 @@ fn a_run_measures_says_and_records() {
     }
     assert_eq!(of("waving").len(), of("measurement").len());
 
+    // A hard edge that moves jumps where a soft one slides; rays and edges have the same samples in all frames.
+    assert_eq!(of("sweep").len(), 3 * of("measurement").iter().filter(|row| row["semi_opaque"] == false).count());
+    for moving in ["light", "receivers", "object"] {
+        let of_case = |name: &str| {
+            let row = of("sweep").into_iter().find(|row| row["moving"] == moving && row["technique"]["name"] == name);
+            let steady = row.unwrap()["steadiness"].clone();
+            (steady["flicker"].as_f64().unwrap(), steady["largest_jump"].as_f64().unwrap())
+        };
+        let (hard, soft) = (of_case("hard_shadow_map"), of_case("depth_complexity"));
+        assert!(soft.0 < 0.6 * hard.0 && soft.1 < hard.1, "{moving}: {soft:?} against {hard:?}");
+    }
+
     // The kept references serve the next run, bit by bit.
     let kept = std::fs::read_dir(&cache).unwrap().map(|f| f.unwrap().metadata().unwrap().modified().unwrap());
     let kept: Vec<_> = kept.collect();
@@ -104,6 +118,31 @@ fn a_run_measures_says_and_records() {
     let still: Vec<_> =
         std::fs::read_dir(&cache).unwrap().map(|f| f.unwrap().metadata().unwrap().modified().unwrap()).collect();
     assert_eq!((kept.len(), &kept), (2, &still));
+}
+
+#[test]
+fn an_ended_run_goes_on_where_it_stopped() {
+    let json = scratch("resumed.json");
+    let run = |scenes: &[&str]| {
+        let mut arguments = vec!["--quick", "--resume", "--size", "24", "--repeats", "1", "--device", "native"];
+        arguments.extend(scenes.iter().flat_map(|scene| ["--scene", scene]));
+        arguments.extend(["--technique", "ray_traced:samples=16", "--json", json.to_str().unwrap()]);
+        let output = bench(&arguments);
+        assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
+        let lines = std::fs::read_to_string(&json).unwrap();
+        (text(&output.stdout), lines.lines().filter(|line| line.contains("\"measurement\"")).count())
+    };
+    let (first, lines) = run(&["fork"]);
+    assert!(!first.contains("measured before") && lines == 1, "{first}");
+    // The end of a line that was never finished.
+    let half = std::fs::read_to_string(&json).unwrap() + "{\"kind\": \"measu";
+    std::fs::write(&json, half).unwrap();
+    let (second, lines) = run(&["fork", "toruses"]);
+    assert!(second.contains("fork, 24 × 24: measured before") && lines == 2, "{second}");
+    // Other lines are no benchmark's.
+    std::fs::write(&json, "nonsense\n").unwrap();
+    let output = bench(&["--resume", "--scene", "fork", "--size", "8", "--json", json.to_str().unwrap()]);
+    assert!(text(&output.stderr).contains("line 1"), "{}", text(&output.stderr));
 }
 
 #[test]
@@ -136,6 +175,8 @@ fn nonsense_is_refused_with_the_way_out() {
         (&["--size", "0"], "WIDTHxHEIGHT"),
         (&["--repeats", "0"], "0 is not in 1.."),
         (&["--waving", "0"], "0 is not in 1.."),
+        (&["--sweep", "1"], "1 is not in 2.."),
+        (&["--resume"], "--json"),
         (&["--ratios", "some"], "[possible values: all, published]"),
         (&["--scene", "fork", "--size", "8", "--reference", "hard_shadow_map"], "has no standard error"),
         (&["--device", "quantum"], "none of 'auto', 'gpu', 'native', 'software'"),

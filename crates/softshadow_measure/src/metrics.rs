@@ -9,6 +9,7 @@ use std::collections::VecDeque;
 use std::fmt;
 
 use crate::MeasureError;
+use crate::structure::{Structure, structure};
 
 /// Reference visibility up to which a pixel is umbra; from 1 minus it a pixel is lit; in between it is penumbra.
 pub const UMBRA_LIMIT: f32 = 0.002;
@@ -79,6 +80,8 @@ pub struct ErrorReport {
     /// Mean standard error of the reference in the penumbra; `None` when none was given. A difference below about twice
     /// this is not distinguishable from the reference's own noise.
     pub penumbra_reference_se: Option<f64>,
+    /// What neighbouring pixels say; `None` without a width.
+    pub structure: Option<Structure>,
 }
 
 /// A visibility image to measure against.
@@ -162,6 +165,7 @@ pub fn compare(estimate: &[f32], reference: &ReferenceImage<'_>) -> Result<Error
             let sum: f64 = penumbra.iter().map(|&pixel| f64::from(se[pixel])).sum();
             sum / penumbra.len() as f64
         }),
+        structure: reference.width.and_then(|width| structure(estimate, truth, width)),
     })
 }
 

@@ -10,6 +10,7 @@ mod pass;
 mod plan;
 mod program;
 mod resource;
+mod work;
 
 pub use check::{PlanError, check};
 pub use engine::{AdapterInfo, DeviceKind, Engine, OnStage, PassTime, RunReport, StageReport, Timing};
@@ -21,3 +22,4 @@ pub use pass::{
 pub use plan::{Plan, SLICE};
 pub use program::{Program, Stage, Step, Values};
 pub use resource::{Content, ContentKey, Origin, Resource, ResourceId, Shape, TextureFormat};
+pub use work::PassWork;

@@ -44,7 +44,7 @@ mod _core {
     #[pymodule_export]
     use super::technique::{check_technique, technique_defaults};
     #[pymodule_export]
-    use super::visibility::{render, visibility};
+    use super::visibility::{cache_folder, render, visibility, visibility_within};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -70,6 +70,29 @@ impl Technique {
         ]
     }
 
+    /// Settings in rising quality, of which a search for the cheapest that is good enough takes one; empty where more effort does not
+    /// lead to the truth.
+    #[must_use]
+    pub fn rising_quality(&self) -> Vec<Self> {
+        match self {
+            Self::RayTraced(settings) => settings.rising_quality().map(Self::RayTraced).collect(),
+            Self::DepthComplexity(settings) => settings.rising_quality().map(Self::DepthComplexity).collect(),
+            Self::HardShadowMap(_) => Vec::new(),
+        }
+    }
+
+    /// The root mean square error in penumbrae that its samples lead to expect, where nothing else makes it wrong. It has to be measured
+    /// for all others.
+    #[must_use]
+    pub fn expected_error(&self) -> Option<f64> {
+        match self {
+            Self::RayTraced(_) | Self::DepthComplexity(_) => {
+                Some(spread::expected_error(self.samples(), self.passes()))
+            }
+            Self::HardShadowMap(_) => None,
+        }
+    }
+
     /// The name by which settings files and the command line know it.
     #[must_use]
     pub fn name(&self) -> &'static str {

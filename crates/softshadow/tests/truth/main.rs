@@ -10,6 +10,7 @@ mod backends;
 mod bad_input;
 mod blended;
 mod blocks;
+mod choose;
 mod closed_forms;
 mod common;
 mod contact;
