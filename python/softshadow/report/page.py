@@ -19,7 +19,7 @@ from .summary import summary
 # Nothing is fetched from anywhere, whatever a name or a note may hold.
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 _FOOTER = (
-    '<footer><p class="note">All numbers, with all digits and the plans that made them, are in <code>report.json</code>'
+    '<footer><p class="note">All numbers, with all digits, are in <code>report.json</code>'
     " beside this page; fronts are there as PNG. Times hold for the machine and the run that made them: compare "
     "ratios.</p></footer>"
 )
