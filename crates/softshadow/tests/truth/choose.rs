@@ -26,7 +26,7 @@ fn held_back(seed: u64, size: [u32; 2]) -> (Scene, Light, Camera) {
     let mut random = Random(seed);
     let ground = vec![[-4.0, 0.0, -4.0], [4.0, 0.0, -4.0], [4.0, 0.0, 4.0], [-4.0, 0.0, 4.0]];
     let (mut corners, mut faces) = (ground, vec![[0, 1, 2], [0, 2, 3]]);
-    let leaves = random.next() % 2 == 0;
+    let leaves = random.next().is_multiple_of(2);
     for _ in 0..if leaves { 300 } else { 12 } {
         let middle = random.point([-1.5, 1.5], [0.1, 1.5], [-1.5, 1.5]);
         let first = corners.len() as u32;
