@@ -144,10 +144,10 @@ def told(rows: list[Row], size: int, device: str) -> tuple[list[str], bool]:
     samples = f"{REFERENCE.samples * REFERENCE.passes:,}"
     lines = [
         f"{len(rows)} runs on random scenes of seeds that development never saw, {size} × {size}, {device}; truth by "
-        f"{samples} rays a receiver, whose own variance is taken off mean squares. *Holds*: what was promised, with 95 % "
-        "confidence, is true. *Ratio*: time of the choice over that of the fastest candidate that keeps the bound, in "
-        "hindsight (candidates predicted at up to three times the choice are tried; times are noisy where the machine "
-        "has other work).",
+        f"{samples} rays a receiver, whose own variance is taken off mean squares. *Holds*: what was promised, with "
+        "95 % confidence, is true. *Ratio*: time of the choice over that of the fastest candidate that keeps the "
+        "bound, in hindsight (candidates predicted at up to three times the choice are tried; times are noisy where "
+        "the machine has other work).",
         "",
         f"**Holds in {held:.1%}** (at least {LEAST_HELD:.0%}); met {sum(row.met for row in rows)} of {len(rows)}. "
         f"**Median ratio {ratio:.2f}** (at most {SLOWEST}). A pilot ran in {len(pilots)}, median share of the run "

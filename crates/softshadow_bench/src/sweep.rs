@@ -5,7 +5,9 @@
 
 use serde::Serialize;
 use softshadow::measure::{Frame, TemporalReport, compare_frames};
-use softshadow::{Context, Error, Light, Options, Points, Receivers, Scene, Technique, Visibility, visibility};
+use softshadow::{
+    Context, Error, Evaluation, Light, Options, Points, Receivers, Scene, Technique, Visibility, visibility,
+};
 
 use crate::case::Case;
 use crate::error::BenchError;
@@ -52,7 +54,9 @@ pub(crate) fn measure<'a>(
         let places = (0..frames).map(|frame| placed(measured, moving, f64::from(frame) / f64::from(frames - 1)));
         let places: Vec<Place> = places.collect::<Result<_, _>>()?;
         let truths = places.iter().map(|place| place.see(context, reference, true)).collect::<Result<Vec<_>, _>>()?;
-        for case in &cases {
+        // Points have no neighbours to be averaged with, and no image to draw over.
+        let serves = |case: &&&Case| moving != Moving::Receivers || !needs_image(&case.technique);
+        for case in cases.iter().filter(serves) {
             match places.iter().map(|place| place.see(context, &case.technique, false)).collect::<Result<Vec<_>, _>>() {
                 Ok(seen) => sweeps.push(Sweep {
                     case: case.text.clone(),
@@ -66,6 +70,14 @@ pub(crate) fn measure<'a>(
         }
     }
     Ok((sweeps, failures))
+}
+
+fn needs_image(technique: &Technique) -> bool {
+    let is_blended = match technique {
+        Technique::DepthComplexity(settings) => settings.evaluation == Evaluation::Blended,
+        _ => false,
+    };
+    technique.interleaves() || is_blended
 }
 
 fn steadiness(seen: &[Visibility], truths: &[Visibility]) -> Result<Option<TemporalReport>, BenchError> {

