@@ -1,10 +1,10 @@
 //! The adapter that was chosen, and Vulkan beside GL.
 
 use softshadow::{
-    Context, DeviceChoice, DeviceKind, Options, Receivers, SampleSpread, Visibility, adapters, visibility,
+    Context, DeviceChoice, DeviceKind, Options, Ramp, Receivers, SampleSpread, Visibility, adapters, visibility,
 };
 
-use crate::common::{Random, depth_complexity, hard_shadow_map, ray_traced, shipped, surface_points};
+use crate::common::{Random, depth_complexity, hard_shadow_map, penumbra_map, ray_traced, shipped, surface_points};
 use crate::spreads::both;
 
 /// Set where Mesa's drivers are installed, so that a missing adapter fails instead of being skipped.
@@ -58,7 +58,7 @@ fn vulkan_and_gl_agree() {
     let mut faults = Vec::new();
     let floor = Random(4).points(20_000, [-4.0, 4.0], [0.0, 0.0], [-5.0, 5.0]);
     let [apart, interleaved] = [both(64, SampleSpread::Decorrelated), both(64, SampleSpread::Interleaved)];
-    let shared = [ray_traced(64), hard_shadow_map(1024), depth_complexity(64)];
+    let shared = [ray_traced(64), hard_shadow_map(1024), penumbra_map(1024, Ramp::Light), depth_complexity(64)];
     for technique in shared.into_iter().chain(apart).chain(interleaved) {
         for (name, receivers) in
             [("camera", Receivers::Camera(camera)), ("points", surface_points(floor.clone(), [0.0, 1.0, 0.0]))]

@@ -132,7 +132,7 @@ pub(crate) fn views(request: &Request<'_>, resolution: u32) -> Vec<ShadowView> {
 }
 
 /// Corners of the box around casters and receivers in local space; `None` without casters.
-fn hull(request: &Request<'_>) -> Option<[DVec3; 8]> {
+pub(crate) fn hull(request: &Request<'_>) -> Option<[DVec3; 8]> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     // The hierarchy's root knows the bounds of its sub-scene.
     for root in request.scene.local.sub_scenes.iter().filter_map(|s| s.nodes.first()) {
