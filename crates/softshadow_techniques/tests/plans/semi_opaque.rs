@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use softshadow_plan::{Plan, Work};
 use softshadow_scene::SampleSpread;
 use softshadow_techniques::depth_complexity::Evaluation;
-use softshadow_techniques::{Attenuation, DepthComplexity, Request, Shading, Technique};
+use softshadow_techniques::{Attenuation, DepthComplexity, RayTraced, Request, Shading, Technique};
 
 use crate::requests::{Fixture, stage, techniques};
 
