@@ -66,7 +66,8 @@ def doctor() -> Diagnosis:
 
 _NO_DRIVER = (
     "no graphics driver: everything runs natively on the processor, but what draws triangles (hard_shadow_map, "
-    "penumbra_map, depth_complexity with evaluation='blended'). On Debian or Ubuntu a software driver for those is installed by "
+    "penumbra_map, depth_complexity with evaluation='blended'). On Debian or Ubuntu a software driver for those is "
+    "installed by "
     "`apt-get install -y mesa-vulkan-drivers libvulkan1`"
 )
 

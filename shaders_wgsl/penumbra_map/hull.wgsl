@@ -13,8 +13,9 @@ const HULL_TRIANGLES: u32 = 4u;
 // next to it.
 const STEEPEST: f32 = 100.0;
 
-// By so many texels the hull reaches over the edge: corners are drawn to a part of a texel.
-const TEXEL_MARGIN: f32 = 1.5;
+// By so many texels the hull reaches over the edge: corners are drawn to a sixteenth of a texel, or finer. No farther, as the occluder itself
+// is there, in one plane with its edge.
+const TEXEL_MARGIN: f32 = 0.0625;
 
 // One end of an edge in the image plane at distance 1 (of a sun: in any plane across its way).
 struct EndImage {

@@ -1,4 +1,4 @@
-"""Penumbra maps: what softness costs, how that grows, and how wrong it is. A software driver draws; references are native."""
+"""Penumbra maps: what softness costs, how that grows, and how wrong it is. A driver draws; references are native."""
 
 from __future__ import annotations
 
@@ -66,9 +66,7 @@ def taking_turns(view: Measured, techniques: list[ss.Technique], rounds: int) ->
     times: list[list[float]] = [[] for _ in techniques]
     for turn in range(rounds + 1):
         for own, technique in zip(times, techniques, strict=True):
-            info = ss.visibility(
-                view.scene, view.light, camera=view.camera, technique=technique, device=DEVICE
-            ).info
+            info = ss.visibility(view.scene, view.light, camera=view.camera, technique=technique, device=DEVICE).info
             if turn:
                 own.append(info["wall_ms"])
     return times
@@ -98,10 +96,8 @@ def against_hard(rounds: int, size: int) -> list[str]:
         truth = values(view, REFERENCE, "native")
         own, theirs = (error(values(view, technique), truth) for technique in (SOFT, edges))
         medians = [f"{statistics.median(ms):.0f}" for ms in (hard, soft, sampled)]
-        lines.append(
-            f"| {name} | {medians[0]} | {medians[1]} | {ratio(soft, hard)} | {published} | {own.cells} | {medians[2]} | "
-            f"{theirs.cells} | {ratio(soft, sampled)} |"
-        )
+        cells = [name, *medians[:2], ratio(soft, hard), published, own.cells, medians[2], theirs.cells]
+        lines.append(f"| {' | '.join([*cells, ratio(soft, sampled)])} |")
         if statistics.median(soft) > statistics.median(sampled) and own.rmse > theirs.rmse:
             dominated.append(name)
     verdict = f"slower and farther off on {', '.join(dominated)}" if dominated else "slower and farther off nowhere"
@@ -124,8 +120,8 @@ def growth(rounds: int, size: int) -> list[str]:
         lines.append(f"| {count:,} | {medians} | {ratio(soft, hard)} |")
     lines += [
         "",
-        "With the light's side, on the bunny and at two resolutions; errors against rays to the same light. *Umbra*: share "
-        "of the receivers that see nothing, behind it that of the reference.",
+        "With the light's side, on the bunny and at two resolutions; errors against rays to the same light. *Umbra*: "
+        "share of the receivers that see nothing, behind it that of the reference.",
         "",
         "| side | 512² ms | 1024² ms | 512² RMSE | bias | 1024² RMSE | bias | umbra | of the reference |",
         "|---" * 9 + "|",

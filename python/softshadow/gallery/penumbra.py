@@ -28,8 +28,8 @@ def penumbrae(studio: Studio) -> Exhibit:
     return Exhibit(
         name="penumbrae",
         title="Penumbra maps",
-        look="The hard shadow stays as the light grows, and penumbrae grow around it: the inner half of each is missing, "
-        "so the larger light has the larger, darker shadow (blue). The paper's ramp is darker still.",
+        look="The hard shadow stays as the light grows, and penumbrae grow around it: the inner half of each is "
+        "missing, so the larger light has the larger, darker shadow (blue). The paper's ramp is darker still.",
         panels=(
             studio.panel("hard", "shadow map", small, HardShadowMap(resolution=1024), truths[0]),
             *shots,
@@ -49,8 +49,8 @@ def concavities(studio: Studio) -> Exhibit:
     return Exhibit(
         name="concavities",
         title="Overlapping penumbrae",
-        look="In a notch of the star two penumbrae overlap. In truth their shares multiply; the darkest of both leaves a "
-        "crease where they are equal, and the shadow is too dark everywhere (blue), most at the tips.",
+        look="In a notch of the star two penumbrae overlap. In truth their shares multiply; the darkest of both leaves "
+        "a crease where they are equal, and the shadow is too dark everywhere (blue), most at the tips.",
         panels=(
             studio.panel("hard", "shadow map", view, HardShadowMap(resolution=1024), truth),
             shot,

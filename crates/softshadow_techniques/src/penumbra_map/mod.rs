@@ -16,7 +16,8 @@
 //! perspective bends.
 //!
 //! **When it is wrong.** Always, and darker: the umbra is the hard shadow and never shrinks, so half of every penumbra is missing, 0.5 at the
-//! hard edge, 0.25 on average of an isolated one. The larger the light, and the farther the surface behind its occluder, the worse.
+//! hard edge, 0.25 on average of an isolated one. In root mean square that is as far off as a hard shadow, 0.289: what is gained is
+//! that no step is seen. The larger the light, and the farther the surface behind its occluder, the worse.
 //! Where penumbrae overlap the darkest stands for their sum or product. Silhouettes are those of the light's centre. Maps show
 //! the foremost surfaces alone: a receiver that no texel shows is lit, and counted. A penumbra narrower than a texel is hard. Horizons
 //! that cut the light are none. Semi-opaque triangles are taken for opaque, textures of lights are left out, a concave outline is
@@ -137,12 +138,8 @@ fn append_map(
 ) -> ResourceId {
     let silhouettes = light_silhouettes::append(plan, occluders, light);
     let record = plan.parameter("penumbra light", size_of::<PenumbraLight>() as u64);
-    let shape = Shape::Texture {
-        format: TextureFormat::Depth32Float,
-        size: [settings.resolution; 2],
-        // As many as the depth map has.
-        layers: views.max(2),
-    };
+    let layers = shadow_views::layers(views);
+    let shape = Shape::Texture { format: TextureFormat::Depth32Float, size: [settings.resolution; 2], layers };
     let texture = plan.resource("penumbra map", shape, Origin::Transient);
     for layer in 0..views {
         // The corners' pass has added it.

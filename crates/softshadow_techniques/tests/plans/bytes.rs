@@ -147,7 +147,9 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                 (false, true) => 6,
                 (false, false) => 1,
             };
-            let map = u64::from(*resolution).pow(2) * 4 * views.max(2);
+            // Never one layer nor six, which are no arrays on GL.
+            let layers = if views == 6 { 7 } else { 2 };
+            let map = u64::from(*resolution).pow(2) * 4 * layers;
             if views > 0 || matches!(technique, Technique::HardShadowMap(_)) {
                 add("depth map".into(), map);
             }

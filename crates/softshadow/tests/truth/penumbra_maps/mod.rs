@@ -7,7 +7,7 @@ mod silhouettes;
 
 use softshadow::{Light, LightShape, Ramp, Visibility};
 
-use crate::common::{Random, penumbra_map, see, surface_points};
+use crate::common::{Random, hard_shadow_map, penumbra_map, see, surface_points};
 use crate::shapes::{Point, Triangle, plate, scene};
 
 /// The lamp's height over the floor, and the plate's.
@@ -114,6 +114,16 @@ fn a_half_plane_shows_the_known_bias_and_no_other() {
         let near = t.iter().zip(&seen.values).filter(|(t, _)| t.abs() < 0.02);
         let worst = near.map(|(t, v)| f64::from(*v) - (0.5 + 0.5 * t)).fold(0.0, f64::min);
         println!("half plane at {height}: {worst:.4} at the hard edge");
+        // In root mean square no nearer to the truth than a hard shadow, whose error is the same on the dark side and as large on the
+        // bright one.
+        let receivers = surface_points(places.clone(), [0.0, 0.0, 1.0]);
+        let hard = see(&scene(&triangles), &[over(square(1.0))], &receivers, &hard_shadow_map(2048));
+        let rmse = |seen: &Visibility| {
+            let inside = t.iter().zip(&seen.values).filter(|(t, _)| t.abs() < 1.0);
+            mean(inside.map(|(t, v)| (f64::from(*v) - (0.5 + 0.5 * t)).powi(2))).sqrt()
+        };
+        println!("half plane at {height}: RMSE {:.4}, of a hard shadow {:.4}", rmse(&seen), rmse(&hard));
+        assert!([rmse(&seen), rmse(&hard)].iter().all(|r| (r - 1.0 / 12_f64.sqrt()).abs() < 0.01));
         assert!((worst + 0.5).abs() < 0.02, "{worst}");
     }
 }

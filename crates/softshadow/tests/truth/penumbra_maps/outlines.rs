@@ -166,7 +166,7 @@ fn around_a_corner_a_cone_joins_the_sheets() {
 #[test]
 fn six_faces_see_what_one_view_sees() {
     // The border falls on the seam between two faces of the cube: 45 degrees from straight down.
-    let height = 2.0;
+    let height = 1.0;
     let lean = std::f64::consts::FRAC_PI_4;
     let far: Vec<Triangle> = [[7.0, 0.0, 0.0], [0.0, 7.0, 0.0], [0.0, 0.0, 12.0]]
         .iter()
@@ -177,8 +177,8 @@ fn six_faces_see_what_one_view_sees() {
         [q[0], q[1], q[2] + LAMP]
     };
     let (t, places) = across(half_width(height, 0.4));
-    let mut small = plate([-1.2, 1.2], [-1.2, 1.2], 0.0);
-    small.extend(plate([-1.2, 0.0], [-1.2, 1.2], height));
+    let mut small = plate([-0.8, 0.8], [-0.3, 0.3], 0.0);
+    small.extend(plate([-0.8, 0.0], [-0.3, 0.3], height));
     let mut alone = map(&small, about);
     let normal = turned([0.0, 0.0, 1.0], lean, 0.3);
     let receivers = crate::common::surface_points(places.iter().map(|p| about(*p)).collect(), normal);
