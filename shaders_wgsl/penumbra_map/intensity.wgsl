@@ -39,13 +39,17 @@ fn edge_image(low: vec3<f32>, high: vec3<f32>, p: vec3<f32>, slant: f32) -> Edge
     let scale = mix(1.0, p.z, slant);
     let image_a = (start.xy * scale - p.xy * start.z * slant) / -start.z;
     let image_b = (end.xy * scale - p.xy * end.z * slant) / -end.z;
-    let way = image_b - image_a;
+    // The line starts at the nearer end: a far one, of an edge that meets the height of the surface, has lost the digits that matter here.
+    let is_turned = dot(image_a, image_a) > dot(image_b, image_b);
+    let near = select(image_a, image_b, is_turned);
+    let way = select(image_b, image_a, is_turned) - near;
     let span = length(way);
+    let heights = -vec2<f32>(start.z, end.z);
     var image: EdgeImage;
-    image.start = image_a;
+    image.start = near;
     image.along = select(vec2<f32>(1.0, 0.0), way / max(span, 1e-30), span > 0.0);
     image.span = span;
-    image.heights = vec2<f32>(-start.z, -end.z);
+    image.heights = select(heights, heights.yx, is_turned);
     image.exists = max(-a.z, -b.z) > least;
     return image;
 }
