@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import benchmark
+import maps_penumbra
 import native
 import numpy as np
 from edges import against_rays, mutants
@@ -93,6 +94,7 @@ def main() -> int:
         },
         "Where the time goes": lambda: benchmark.passes("bunny", PASSES, chosen.rounds, ("native", "software")),
         "Ratios of the paper": lambda: benchmark.ratios(["bunny", "toruses"], chosen.rounds),
+        "Penumbra maps": lambda: maps_penumbra.penumbra_maps(chosen.rounds),
         "A scene that moves": lambda: benchmark.waving(["bunny", "toruses"], MOVING, frames=10),
         "Natively: threads": lambda: native.threads(chosen.rounds),
         "Natively: a city's sky": lambda: native.sky(1_000_000),
