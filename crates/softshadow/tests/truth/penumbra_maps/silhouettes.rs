@@ -117,7 +117,7 @@ fn the_list_is_that_of_the_definition() {
         assert_eq!(different(&found, &truth), 0, "{name}: {found:?} {truth:?}");
         // A weight with the other sign, an edge too few, and a light somewhere else are seen.
         let mut spoilt = found.clone();
-        spoilt.values_mut().next().map(|w| *w = -*w);
+        spoilt.values_mut().take(1).for_each(|w| *w = -*w);
         assert_eq!(different(&spoilt, &truth), 1, "{name}");
         spoilt.pop_first();
         assert_eq!(different(&spoilt, &truth), 1, "{name}");
