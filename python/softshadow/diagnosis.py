@@ -138,7 +138,7 @@ _SMALL_BINDING = 128 << 20
 
 _NO_DRIVER = (
     "no graphics driver: everything runs natively on the processor, but what draws triangles (hard_shadow_map, "
-    "depth_complexity with evaluation='blended')"
+    "penumbra_map, depth_complexity with evaluation='blended')"
 )
 _ONLY_GL = "no Vulkan driver, only OpenGL, which is slow and cannot blend float32"
 

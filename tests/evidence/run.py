@@ -22,6 +22,7 @@ from pathlib import Path
 
 import benchmark
 import bound
+import maps_penumbra
 import native
 import numpy as np
 import results
@@ -96,6 +97,7 @@ def main() -> int:
         },
         "Where the time goes": lambda: benchmark.passes("bunny", PASSES, chosen.rounds, ("native", "software")),
         "Ratios of the paper": lambda: benchmark.ratios(["bunny", "toruses"], chosen.rounds),
+        "Penumbra maps": lambda: maps_penumbra.penumbra_maps(chosen.rounds),
         "A scene that moves": lambda: benchmark.waving(["bunny", "toruses"], MOVING, frames=10),
         "Natively: threads": lambda: native.threads(chosen.rounds),
         "Natively: a city's sky": lambda: native.sky(1_000_000),

@@ -172,6 +172,8 @@ NONSENSE = [
     (lambda: ss.DepthComplexity(unit=None), ss.SettingsError, "unit"),
     (lambda: ss.HardShadowMap(resolution=0), ss.SettingsError, "resolution"),
     (lambda: ss.HardShadowMap(resolution=2**31), ss.SettingsError, "resolution"),
+    (lambda: ss.PenumbraMap(resolution=15), ss.SettingsError, "resolution"),
+    (lambda: ss.PenumbraMap(ramp="smooth"), ss.SettingsError, "light.*linear.*paper"),
     # calls
     (lambda: visibility(SCENE, LIGHT), ss.SceneError, "either a camera or points"),
     (

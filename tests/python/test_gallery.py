@@ -143,6 +143,19 @@ def test_triangles_say_what_rays_say():
     assert error("foliage", "hard") > 3 * error("foliage", "triangles")
 
 
+def test_the_umbra_of_a_penumbra_map_never_shrinks():
+    def dark(panel: str) -> int:
+        return int((values("penumbrae", panel) < 0.002).sum())
+
+    assert dark("large") >= 0.9 * dark("hard")
+    assert dark("reference") < 0.9 * dark("large")
+    assert error("penumbrae", "paper") > error("penumbrae", "large") > 0.2
+    # Darkest is darker than truth, and in shadows alone.
+    errors = values("concavities", "darkest_error")
+    assert np.nanmin(errors) < -0.3
+    assert (errors > 0.1).mean() < 0.01
+
+
 def test_false_colours():
     signs = colors.signed(np.array([[-2.0, -1, 0, 1, np.nan]]))[0].astype(int)
     np.testing.assert_array_equal(signs[0], signs[1])

@@ -13,6 +13,7 @@ use softshadow_techniques::parts::interleaving::NOISY_BYTES;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
 use softshadow_techniques::parts::resolve::{BLOCKED, STANDARD_ERROR};
 use softshadow_techniques::parts::shading::COLOR;
+use softshadow_techniques::penumbra_map::STRAYS;
 use softshadow_techniques::ray_traced::TRACE_COUNTS;
 use softshadow_techniques::{
     Block, OccluderContents, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
@@ -166,6 +167,10 @@ pub(crate) fn run(
     }
     let touching = occluders.iter().filter_map(|o| o.touching.as_ref());
     collector.result.info.touching_triangles = touching.map(|t| t.count as usize).sum();
+    if let (Technique::PenumbraMap(_), count @ 1..) = (technique, collector.result.info.touching_triangles) {
+        let note = format!("{count} triangles touch a ball of light: penumbra_map gives them hard shadows");
+        collector.result.info.notes.push(note);
+    }
     collector.result.info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
     collector.result.info.triangles_behind = occluders.iter().map(|o| o.triangles_behind).sum();
     let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
@@ -373,6 +378,8 @@ struct Collector<'a> {
     overflowed: u64,
     /// Receivers that no wedge is sure to reach.
     astray: u64,
+    /// Receivers that no texel of a penumbra map shows.
+    unmapped: u64,
 }
 
 impl<'a> Collector<'a> {
@@ -417,7 +424,7 @@ impl<'a> Collector<'a> {
             zero_area_triangles: contents.local.dropped.zero_area,
             unresolved_triangles: contents.local.dropped.below_resolution,
             invisible_triangles: contents.local.dropped.invisible,
-            notes: notes(scene, technique, &contents.local).into_iter().chain(device.stands_in()).collect(),
+            notes: notes(scene, lights, technique, &contents.local).into_iter().chain(device.stands_in()).collect(),
             error_kind: if has_error { "statistical" } else { "none" },
             standard_error: None,
             choice: None,
@@ -449,7 +456,7 @@ impl<'a> Collector<'a> {
         };
         let frame = contents.local.frame;
         let caller_ids = &contents.local.caller_ids;
-        Self { result, colors: Vec::new(), frame, caller_ids, unfinished: 0, overflowed: 0, astray: 0 }
+        Self { result, colors: Vec::new(), frame, caller_ids, unfinished: 0, overflowed: 0, astray: 0, unmapped: 0 }
     }
 
     fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Cow<'_, [u8]>>) {
@@ -471,6 +478,10 @@ impl<'a> Collector<'a> {
         }
         if let Some(bytes) = outputs.get(LARGEST_COUNTS) {
             self.astray += records::<Largest>(bytes).iter().map(|l| u64::from(l.astray)).sum::<u64>();
+        }
+        if let Some(bytes) = outputs.get(STRAYS) {
+            let counts: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+            self.unmapped += counts.iter().map(|n| u64::from(*n)).sum::<u64>();
         }
         let (count, channels) = (self.result.receivers, self.result.channels);
         let copy = |label: &str, width: usize, into: &mut [f32]| {
@@ -528,6 +539,10 @@ impl<'a> Collector<'a> {
                 let mean_square = known.iter().map(|e| e * e).sum::<f64>() / known.len() as f64;
                 self.result.info.standard_error = Some(mean_square.sqrt());
             }
+        }
+        if self.unmapped > 0 {
+            let count = self.unmapped;
+            self.result.info.notes.push(format!("{count} receivers are not on what penumbra_map shows there, and lit"));
         }
         self.result.info.valid_receivers = valid.iter().filter(|v| **v).count();
         self.result.info.add_run(report);

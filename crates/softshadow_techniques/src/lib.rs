@@ -6,6 +6,7 @@ mod block;
 pub mod depth_complexity;
 pub mod hard_shadow_map;
 pub mod parts;
+pub mod penumbra_map;
 mod program;
 pub mod ray_traced;
 mod request;
@@ -23,6 +24,7 @@ pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
 pub use parts::shading::Shading;
 use parts::spread;
+pub use penumbra_map::PenumbraMap;
 pub use program::{StageTask, VisibilityProgram};
 pub use ray_traced::RayTraced;
 pub use request::{ReceiverSource, Request, Wants};
@@ -36,6 +38,8 @@ pub enum Technique {
     RayTraced(RayTraced),
     /// One depth map from the light's centre: what softness is compared with.
     HardShadowMap(HardShadowMap),
+    /// A shadow map, and beside it the penumbra of what it shows: fast, and too dark.
+    PenumbraMap(PenumbraMap),
     /// Silhouette edges and counters: as accurate as rays to the same samples.
     DepthComplexity(DepthComplexity),
 }
@@ -66,6 +70,7 @@ impl Technique {
         vec![
             Self::RayTraced(RayTraced::default()),
             Self::HardShadowMap(HardShadowMap::default()),
+            Self::PenumbraMap(PenumbraMap::default()),
             Self::DepthComplexity(DepthComplexity::default()),
         ]
     }
@@ -99,6 +104,7 @@ impl Technique {
         match self {
             Self::RayTraced(_) => "ray_traced",
             Self::HardShadowMap(_) => "hard_shadow_map",
+            Self::PenumbraMap(_) => "penumbra_map",
             Self::DepthComplexity(_) => "depth_complexity",
         }
     }
@@ -106,7 +112,7 @@ impl Technique {
     /// Whether it works on silhouette edges, and wants to know what hides each light.
     #[must_use]
     pub fn wants_occluders(&self) -> bool {
-        matches!(self, Self::DepthComplexity(_))
+        matches!(self, Self::PenumbraMap(_) | Self::DepthComplexity(_))
     }
 
     /// Checks the settings.
@@ -117,6 +123,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.check(),
             Self::HardShadowMap(settings) => settings.check(),
+            Self::PenumbraMap(settings) => settings.check(),
             Self::DepthComplexity(settings) => settings.check(),
         }
     }
@@ -126,7 +133,7 @@ impl Technique {
     pub fn draws(&self) -> bool {
         match self {
             Self::RayTraced(_) => false,
-            Self::HardShadowMap(_) => true,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) => true,
             Self::DepthComplexity(settings) => settings.evaluation == depth_complexity::Evaluation::Blended,
         }
     }
@@ -147,6 +154,7 @@ impl Technique {
             return Err(TechniqueError::Setting { technique: self.name(), setting: "device", reason });
         }
         match self {
+            Self::PenumbraMap(settings) => settings.check_call(lights),
             Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
@@ -159,7 +167,7 @@ impl Technique {
     pub fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_scene(scene),
-            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) => Ok(()),
         }
     }
 
@@ -170,7 +178,7 @@ impl Technique {
     pub fn check_occluders(&self, occluders: &[Arc<OccluderContents>]) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_occluders(occluders),
-            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) => Ok(()),
         }
     }
 
@@ -193,7 +201,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.spread == SampleSpread::Interleaved,
             Self::DepthComplexity(settings) => settings.spread == SampleSpread::Interleaved,
-            Self::HardShadowMap(_) => false,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) => false,
         }
     }
 
@@ -202,7 +210,7 @@ impl Technique {
     pub fn stages(&self) -> u32 {
         match self {
             Self::DepthComplexity(settings) => settings.stages(),
-            Self::RayTraced(_) | Self::HardShadowMap(_) => 1,
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) => 1,
         }
     }
 
@@ -212,7 +220,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.passes,
             Self::DepthComplexity(settings) => settings.passes,
-            Self::HardShadowMap(_) => 1,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) => 1,
         }
     }
 
@@ -222,7 +230,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.samples,
             Self::DepthComplexity(settings) => settings.samples,
-            Self::HardShadowMap(_) => 1,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) => 1,
         }
     }
 
@@ -232,7 +240,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.halo_rows(),
             Self::DepthComplexity(settings) => settings.halo_rows(),
-            Self::HardShadowMap(_) => 0,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) => 0,
         }
     }
 
@@ -242,7 +250,7 @@ impl Technique {
     pub fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64, is_semi_opaque: bool) -> u64 {
         match self {
             Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes, is_semi_opaque),
-            Self::HardShadowMap(_) => 4 * channels,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) => 4 * channels,
             Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels, is_semi_opaque),
         }
     }
@@ -253,6 +261,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::plan(request, settings),
             Self::HardShadowMap(settings) => hard_shadow_map::plan(request, settings),
+            Self::PenumbraMap(settings) => penumbra_map::plan(request, settings),
             Self::DepthComplexity(settings) => depth_complexity::plan(request, settings),
         }
     }
@@ -265,6 +274,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::values(request, settings, light, pass),
             Self::HardShadowMap(settings) => hard_shadow_map::values(request, settings, light),
+            Self::PenumbraMap(settings) => penumbra_map::values(request, settings, light),
             Self::DepthComplexity(settings) => depth_complexity::values(request, settings, light, pass),
         }
     }

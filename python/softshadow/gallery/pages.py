@@ -15,11 +15,24 @@ from softshadow.logs import adapter_words
 from .exhibit import Exhibit, Panel
 from .lamps import shapes, textures
 from .matter import counters, foliage, glass
+from .penumbra import concavities, penumbrae
 from .samples import areas, silhouettes, spreads
 from .studio import Studio
 
 EXHIBITS: dict[str, Callable[[Studio], Exhibit]] = {
-    exhibit.__name__: exhibit for exhibit in (silhouettes, spreads, textures, glass, areas, counters, shapes, foliage)
+    exhibit.__name__: exhibit
+    for exhibit in (
+        silhouettes,
+        spreads,
+        textures,
+        glass,
+        areas,
+        counters,
+        shapes,
+        foliage,
+        penumbrae,
+        concavities,
+    )
 }
 """Every exhibit by its name, in the order in which they hang."""
 
@@ -27,7 +40,7 @@ _INTRODUCTION = """\
 # Gallery
 
 Made by `softshadow gallery`, after the figures of V. Forest, L. Barthe, M. Paulin, "Accurate Shadows by Depth
-Complexity Sampling", 2008. Milliseconds are those of one whole picture by compiled kernels on a prepared scene, taken
+Complexity Sampling", 2008, and of C. Wyman, C. Hansen, "Penumbra Maps", 2003. Milliseconds are those of one whole picture by compiled kernels on a prepared scene, taken
 once; RMSE is that of visibility over the penumbra, against a reference of many rays. In differences red is too bright,
 blue too dark. Times are those of {device}."""
 

@@ -25,6 +25,7 @@ mod interleaved;
 mod invariance;
 mod lights;
 mod moving;
+mod penumbra_maps;
 mod pixels;
 mod same_samples;
 mod samples;

@@ -7,7 +7,8 @@ use softshadow_scene::{LightFrame, LightShape, LocalScene, Material, Mesh, Sampl
 use softshadow_techniques::depth_complexity::OccluderUnit;
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
-    DepthComplexity, OccluderContents, ReceiverSource, Request, SceneContents, Shading, Technique,
+    DepthComplexity, HardShadowMap, OccluderContents, PenumbraMap, ReceiverSource, Request, SceneContents, Shading,
+    Technique,
 };
 
 use crate::requests::{Fixture, POINTS, stage, techniques};
@@ -102,7 +103,7 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
     }
     for (n, sub_scene) in sub_scenes.iter().enumerate() {
         // Silhouettes need no corners: they are there for the camera alone.
-        if !technique.wants_occluders() || request.opens_block && camera {
+        if !technique.wants_occluders() || technique.draws() || request.opens_block && camera {
             add(format!("corners {n}"), sub_scene.corners.len() as u64 / 3 * 48);
         }
         if matches!(technique, Technique::RayTraced(_)) {
@@ -136,7 +137,8 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                 add("probe image".into(), 8);
             }
         }
-        Technique::HardShadowMap(settings) => {
+        Technique::HardShadowMap(HardShadowMap { resolution })
+        | Technique::PenumbraMap(PenumbraMap { resolution, .. }) => {
             // One view, or the faces of a cube for a light within the scene; the texture is always an array.
             let inside = !matches!(request.light.shape(), LightShape::Sun { .. })
                 && request.light.local(&request.scene.local.frame).center.length() < 1.0;
@@ -145,9 +147,27 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                 (false, true) => 6,
                 (false, false) => 1,
             };
-            add("depth map".into(), u64::from(settings.resolution).pow(2) * 4 * views.max(2));
+            // Never one layer nor six, which are no arrays on GL.
+            let layers = if views == 6 { 7 } else { 2 };
+            let map = u64::from(*resolution).pow(2) * 4 * layers;
+            if views > 0 || matches!(technique, Technique::HardShadowMap(_)) {
+                add("depth map".into(), map);
+            }
             (0..views).for_each(|n| add(format!("shadow view {n}"), 64));
             add("shadow views".into(), 6 * 64 + 16);
+            let [_, edges, sides] = hidden_by(request);
+            if matches!(technique, Technique::PenumbraMap(_)) && edges > 0 {
+                add("penumbra map".into(), map);
+                (0..views).for_each(|n| add(format!("map layer {n}"), 16));
+                // Axes, sizes, and 64 corners with a line each.
+                add("penumbra light".into(), 4 * 16 + 64 * 16);
+                add("edges".into(), edges * 32);
+                add("faces at edges".into(), sides * 32);
+                add("edge corners".into(), 16);
+                add("light silhouettes".into(), edges * 32);
+                add("silhouette corners".into(), 16);
+                add("receivers astray".into(), 4);
+            }
         }
         Technique::DepthComplexity(settings) => {
             let ([faces, edges, sides], tiles) = (hidden_by(request), count.div_ceil(64));
@@ -390,7 +410,11 @@ fn what_passes_to_samples_is_sized_where_triangles_are_semi_opaque() {
             _ => 0,
         };
         assert_eq!(of(true) - of(false) + grown(2), grown(3) + area, "{technique:?}");
-        let samples = if technique.name() == "hard_shadow_map" { 0 } else { u64::from(technique.samples()) };
+        let samples = if ["hard_shadow_map", "penumbra_map"].contains(&technique.name()) {
+            0
+        } else {
+            u64::from(technique.samples())
+        };
         assert_eq!(of(true) - of(false), 4 * samples);
     }
 }

@@ -48,7 +48,7 @@ fn refused(storage_buffers: u32) -> BTreeSet<&'static str> {
 fn plans_run_on_core_webgpu_and_need_all_of_its_storage_buffers() {
     assert_eq!(refused(CORE.storage_buffers), BTreeSet::new());
     assert_eq!(refused(CORE.storage_buffers - 1), BTreeSet::from(["depth_complexity", "ray_traced"]));
-    assert_eq!(refused(2), BTreeSet::from(["depth_complexity", "hard_shadow_map", "ray_traced"]));
+    assert_eq!(refused(2), BTreeSet::from(["depth_complexity", "hard_shadow_map", "penumbra_map", "ray_traced"]));
 }
 
 /// The most storage buffers that a pass of any plan of the grid binds, by the labels of the passes that bind so many.
@@ -103,7 +103,7 @@ fn cameras_need_raster_and_points_only_where_a_map_is_drawn() {
     let mut host = Host::default();
     host.features.raster = false;
     for technique in techniques() {
-        let draws_map = technique.name() == "hard_shadow_map";
+        let draws_map = technique.name().ends_with("_map");
         for (receivers, draws) in [(fixture.camera(), true), (fixture.points(), draws_map)] {
             let result = check(&technique.plan(&fixture.request(1, receivers)), &host);
             let refused = matches!(result, Err(PlanError::MissingFeature { feature: "raster", .. }));
