@@ -19,6 +19,7 @@
 mod compare;
 mod context;
 mod error;
+mod foreign;
 pub mod image_file;
 mod info;
 mod light_points;
@@ -29,10 +30,12 @@ mod visibility;
 pub use compare::{Comparison, ComparisonRow, compare};
 pub use context::{Context, DeviceChoice, adapters};
 pub use error::Error;
+pub use foreign::{ForeignCall, ForeignDevice};
 pub use info::{Info, Preparation};
 pub use light_points::{LightPoints, light_points};
 pub use render::{Picture, PictureOptions, render};
 pub use softshadow_measure as measure;
+pub use softshadow_plan as plan;
 pub use softshadow_plan::{AdapterInfo, DeviceKind, PassTime, Timing};
 pub use softshadow_scene::{
     Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, STRETCH_LIMIT,
