@@ -34,7 +34,7 @@ venv: $(VENV)/.made
 $(VENV)/.made: pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet "maturin>=1.9.4,<2" numpy trimesh pytest ruff mypy pillow
+	$(BIN)/python -m pip install --quiet "maturin>=1.9.4,<2" numpy trimesh pytest ruff mypy pillow wgpu pygfx
 	touch $@
 
 extension: venv

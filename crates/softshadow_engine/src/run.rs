@@ -182,6 +182,11 @@ impl WgpuEngine {
         }
         self.fail_if_lost(&plan.name)?;
         if let Some(error) = caught {
+            if !self.answers() {
+                let reason = error.to_string();
+                lock(&self.opened.lost).get_or_insert_with(|| reason.clone());
+                return Err(EngineError::DeviceLost { stage: plan.name.clone(), reason });
+            }
             return Err(from_wgpu(&plan.name, &error));
         }
         if let Some(reason) = lock(&self.opened.uncaught).take() {
@@ -191,6 +196,21 @@ impl WgpuEngine {
             lock(&self.opened.lost).get_or_insert_with(|| reason.clone());
         }
         result
+    }
+
+    /// Whether the device still makes a buffer. One whose callbacks are not ours says only so that it is lost: what it makes is invalid, and
+    /// the first use of that is refused.
+    fn answers(&self) -> bool {
+        let scope = self.opened.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let buffer = self.opened.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("probe"),
+            size: 8,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let is_mapped = self.wait("probe", &[&buffer]).is_ok();
+        drop(pollster::block_on(scope.pop()));
+        is_mapped
     }
 
     fn fail_if_lost(&self, stage: &str) -> Result<(), EngineError> {

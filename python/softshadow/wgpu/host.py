@@ -1,12 +1,10 @@
-"""The interpreter: a call's stages on a device that the caller owns, and what they leave there."""
+"""The front door: calls on a device that their caller owns, and what they leave there."""
 
 from __future__ import annotations
 
 import json
 import threading
-import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,15 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from softshadow import _core
 from softshadow.camera import Camera
 from softshadow.checks import memory_limit_bytes
-from softshadow.errors import GpuError, GpuOutOfMemory, SettingsError
+from softshadow.errors import SettingsError
 from softshadow.lights import Light, built_lights
 from softshadow.scene import Scene
 from softshadow.techniques import RayTraced, Technique, technique_json
 from softshadow.visibility import receivers_of, scene_of
 
-from .encode import Encoding, slices_of
-from .pipelines import Pipelines
-from .pool import Pool
+from .run import Interpreter, refusals
 
 _VISIBILITY = "visibility"
 _STANDARD_ERROR = "standard error"
@@ -50,7 +46,8 @@ class DeviceVisibility:
         Of the values in the buffers, in C order: (H, W) or (points,), with several lights (lights, H, W) or
         (lights, points); a textured light adds a last axis of 3.
     info : dict
-        What made the result, as in :class:`softshadow.Visibility`; how many receivers are valid is not known.
+        What made the result, as in :class:`softshadow.Visibility`, and `image` and `channels`; how many receivers are
+        valid is not known.
     """
 
     device: wgpu.GPUDevice
@@ -60,36 +57,40 @@ class DeviceVisibility:
     info: dict[str, Any]
 
     def copy_to_texture(self, texture: wgpu.GPUTexture, light: int = 0) -> None:
-        """Copies the image of one light to a texture of the same device, on the device.
+        """Copies what one light gives to a texture of the same device, on the device.
 
         Parameters
         ----------
         texture : wgpu.GPUTexture
-            Of format ``"r32float"`` and usage ``COPY_DST``, as wide and high as the image.
+            Of format ``"r32float"`` and usage ``COPY_DST``: as wide and high as the image, or for points with a texel
+            for each, row by row.
         light : int
             Which one, where several were given.
 
         Raises
         ------
         SettingsError
-            For points, coloured values, a light that there is not, and a texture of another size or format.
+            For coloured values, a light that there is not, and a texture of another size or format.
         GpuError
             Where the device refuses.
         """
-        lights, (height, width) = self._images()
-        if not 0 <= light < lights:
-            raise SettingsError(f"light: 0 to {lights - 1} expected, got {light}")
-        if tuple(texture.size[:2]) != (width, height) or texture.format != "r32float":
-            there = f"{texture.format} of {texture.size[0]} × {texture.size[1]}"
-            raise SettingsError(f"texture: r32float of {width} × {height} expected, got {there}")
+        if self.info["channels"] != 1:
+            raise SettingsError("texture: coloured values have no texture format of three channels")
+        if not 0 <= light < self.info["lights"]:
+            raise SettingsError(f"light: 0 to {self.info['lights'] - 1} expected, got {light}")
+        (width, height), receivers, image = texture.size[:2], self.info["receivers"], self.info["image"]
+        fits = width * height == receivers if image is None else [height, width] == image
+        if not fits or texture.format != "r32float":
+            wanted = f"{receivers} texels" if image is None else f"{image[1]} × {image[0]}"
+            there = f"{texture.format} of {width} × {height}"
+            raise SettingsError(f"texture: r32float of {wanted} expected, got {there}")
         row = 4 * width
         whole = row % _ROW_BYTES == 0
         parts = [(0, height)] if whole else [(y, 1) for y in range(height)]
-        with _refusals(self.device, "copy to a texture"):
+        with refusals(self.device, "copy to a texture"):
             encoder = self.device.create_command_encoder()
             for y, rows in parts:
-                offset = 4 * width * height * light + row * y
-                stride = -(-row // _ROW_BYTES) * _ROW_BYTES
+                offset, stride = 4 * receivers * light + row * y, -(-row // _ROW_BYTES) * _ROW_BYTES
                 encoder.copy_buffer_to_texture(
                     {"buffer": self.buffer, "offset": offset, "bytes_per_row": stride, "rows_per_image": rows},
                     {"texture": texture, "origin": (0, y, 0)},
@@ -99,16 +100,10 @@ class DeviceVisibility:
 
     def read(self) -> NDArray[np.float32]:
         """A copy of the values on the processor: float32 of `shape`."""
-        with _refusals(self.device, "read"):
+        with refusals(self.device, "read"):
             size = 4 * int(np.prod(self.shape))
             data = self.device.queue.read_buffer(self.buffer, 0, size) if size else b""
         return np.frombuffer(data, np.float32).reshape(self.shape)
-
-    def _images(self) -> tuple[int, tuple[int, int]]:
-        rows = self.info["image"]
-        if rows is None or self.info["channels"] != 1:
-            raise SettingsError(f"only images of one channel become textures, not values of shape {self.shape}")
-        return int(np.prod(self.shape)) // (rows[0] * rows[1]), (rows[0], rows[1])
 
     def __repr__(self) -> str:
         return f"<DeviceVisibility of shape {self.shape}>"
@@ -124,8 +119,8 @@ class Host:
     Parameters
     ----------
     device : wgpu.GPUDevice
-        The device; its limits and features are what calls are checked against. ``float32-blendable`` is the only feature
-        that a technique may ask for.
+        The device; its limits and features are what calls are checked against. ``float32-blendable`` is the only
+        feature that a technique may ask for.
 
     Raises
     ------
@@ -138,8 +133,7 @@ class Host:
             raise SettingsError(f"device: a wgpu.GPUDevice expected, got {type(device).__name__}")
         self.device = device
         self._foreign = _core.ForeignDevice(json.dumps(_described(device)))
-        self._pipelines = Pipelines(device)
-        self._pool = Pool(device)
+        self._interpreter = Interpreter(device)
         self._turn = threading.Lock()
 
     def visibility(
@@ -189,10 +183,12 @@ class Host:
         sizes = dict(call.results)
         if into is not None:
             _check_result(into, sizes[_VISIBILITY])
-        with self._turn, _refusals(self.device, "visibility", self._pool):
-            made = {name: self._result(name, size) for name, size in sizes.items() if name != _VISIBILITY or into is None}
+        with self._turn, refusals(self.device, "visibility", self._interpreter.pool):
+            made = {
+                name: self._result(name, size) for name, size in sizes.items() if name != _VISIBILITY or into is None
+            }
             results = made if into is None else {**made, _VISIBILITY: into}
-            info = self._run(call, results)
+            info = self._interpreter.run(call, results)
         info |= {"image": list(where.shape) if len(where.shape) == 2 else None, "channels": channels}
         return DeviceVisibility(
             device=self.device,
@@ -205,101 +201,6 @@ class Host:
     def _result(self, name: str, size: int) -> wgpu.GPUBuffer:
         # A binding has at least a word.
         return self.device.create_buffer(label=name, size=max(size, 4), usage=_RESULT)
-
-    def _run(self, call: _core.ForeignCall, results: dict[str, wgpu.GPUBuffer]) -> dict[str, Any]:
-        self._pool.begin_run()
-        self._pool.forget(call.superseded)
-        started, submissions = time.perf_counter(), 0
-        outputs: list[dict[str, bytes]] = []
-        decision = b""
-        while (made := call.stage(len(outputs), decision)) is not None:
-            stage = json.loads(made["description"])
-            read, count = self._run_stage(stage, made["values"], call, results)
-            resources, chosen_by = stage["plan"]["resources"], stage["plan"]["decision"]
-            decision = b"" if chosen_by is None else read[chosen_by]
-            outputs.append({resources[id]["label"]: read[id] for id in stage["plan"]["outputs"]})
-            submissions += count
-        wall_ms = (time.perf_counter() - started) * 1e3
-        info: dict[str, Any] = json.loads(call.finish(outputs, wall_ms, submissions))
-        return info
-
-    def _run_stage(
-        self,
-        stage: dict[str, Any],
-        values: dict[str, bytes],
-        call: _core.ForeignCall,
-        results: dict[str, wgpu.GPUBuffer],
-    ) -> tuple[dict[int, bytes], int]:
-        """What the stage's outputs and its decision hold, by resource, and how many submissions it took."""
-        plan, queue = stage["plan"], self.device.queue
-        slots = [self._pool.slot(resource, call.upload) for resource in plan["resources"]]
-        for resource, slot in zip(plan["resources"], slots, strict=True):
-            if resource["origin"] == "parameter":
-                value = values[resource["label"]]
-                queue.write_buffer(slot, 0, value + bytes(-len(value) % 4))
-        parts = slices_of([dispatch for dispatches in stage["submissions"] for dispatch in dispatches])
-        usage = wgpu.BufferUsage.UNIFORM | wgpu.BufferUsage.COPY_DST
-        slices = self.device.create_buffer(label="slice", size=len(parts), usage=usage)
-        queue.write_buffer(slices, 0, parts)
-        encoding = Encoding(self.device, self._pipelines, stage, slots, slices)
-        wanted = list(dict.fromkeys([*plan["outputs"], *([] if plan["decision"] is None else [plan["decision"]])]))
-        read: dict[int, bytes] = {}
-        for dispatches in stage["submissions"]:
-            encoder = self.device.create_command_encoder(label=plan["name"])
-            for dispatch in dispatches:
-                encoding.dispatch(dispatch, encoder)
-            if dispatches is not stage["submissions"][-1]:
-                self._finish(encoder, {})
-                continue
-            for part in stage["deliveries"]:
-                source, target = slots[part["output"]], results[part["result"]]
-                encoder.copy_buffer_to_buffer(source, part["source"], target, part["target"], part["bytes"])
-            read = self._finish(encoder, {id: slots[id] for id in wanted})
-        slices.destroy()
-        return read, len(stage["submissions"])
-
-    def _finish(self, encoder: wgpu.GPUCommandEncoder, wanted: dict[int, wgpu.GPUBuffer]) -> dict[int, bytes]:
-        """Submits, waits, and reads small buffers back. A submission without any is waited for by a word that it clears."""
-        places, end = {}, 8
-        for id, buffer in wanted.items():
-            places[id] = end, buffer.size
-            end += -(-buffer.size // 8) * 8
-        usage = wgpu.BufferUsage.COPY_DST | wgpu.BufferUsage.MAP_READ
-        back = self.device.create_buffer(label="read back", size=end, usage=usage)
-        encoder.clear_buffer(back, 0, 8)
-        for id, (offset, size) in places.items():
-            encoder.copy_buffer_to_buffer(wanted[id], 0, back, offset, size)
-        self.device.queue.submit([encoder.finish()])
-        back.map_sync("READ_NOSYNC")
-        read = {id: bytes(back.read_mapped(*place, copy=False)) for id, place in places.items()}
-        back.destroy()
-        return read
-
-
-@contextmanager
-def _refusals(device: wgpu.GPUDevice, stage: str, pool: Pool | None = None) -> Iterator[None]:
-    """Errors of the device as ours. Whatever a failed call left behind is not trusted again."""
-    try:
-        yield
-    except BaseException as error:
-        if pool is not None:
-            pool.clear()
-        if isinstance(error, wgpu.GPUOutOfMemoryError):
-            raise GpuOutOfMemory(f"the device is out of memory while running '{stage}': {error}") from error
-        # A buffer that could not be mapped is a RuntimeError to wgpu-py.
-        if not isinstance(error, (wgpu.GPUError, RuntimeError)) or isinstance(error, GpuError):
-            raise
-        what = "was lost while running" if _is_lost(device) else "refuses"
-        raise GpuError(f"the device {what} '{stage}': {error}") from error
-
-
-def _is_lost(device: wgpu.GPUDevice) -> bool:
-    """Whether the device refuses even nothing."""
-    try:
-        device.create_command_encoder().finish()
-    except wgpu.GPUError:
-        return True
-    return False
 
 
 def _check_result(buffer: object, size: int) -> None:

@@ -49,7 +49,7 @@ class Pipelines:
         self, kernel: dict[str, Any], colors: list[tuple[str, str]], depth: tuple[str, str] | None, has_corners: bool
     ) -> Any:
         module = self._module(kernel["file"])
-        targets = [{"format": format, **_blend(blend)} for format, blend in colors]
+        targets = [{"format": texels, **_blend(blend)} for texels, blend in colors]
         buffers = [_CORNERS] if has_corners else []
         return self._device.create_render_pipeline(
             label=kernel["vertex"],
@@ -57,8 +57,7 @@ class Pipelines:
             vertex={"module": module, "entry_point": kernel["vertex"], "buffers": buffers},
             primitive={"topology": "triangle-list"},
             depth_stencil=depth and {"format": depth[0], "depth_write_enabled": True, "depth_compare": depth[1]},
-            fragment=kernel["fragment"]
-            and {"module": module, "entry_point": kernel["fragment"], "targets": targets},
+            fragment=kernel["fragment"] and {"module": module, "entry_point": kernel["fragment"], "targets": targets},
         )
 
     def _kept(self, key: object, binds: bool, make: Callable[[], Any]) -> tuple[Any, Any]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, TypeAlias
 
 import wgpu
 
-Slot = wgpu.GPUBuffer | wgpu.GPUTexture
+Slot: TypeAlias = wgpu.GPUBuffer | wgpu.GPUTexture
 
 # Runs after which uploads that were not used are given back; what else was not used in a run is given back after it.
 _KEPT_RUNS = 8
@@ -50,7 +50,8 @@ class Pool:
         if key in self._slots:
             slot = self._slots[key][0]
         elif "texture" in shape:
-            slot = self._texture(resource["label"], **shape["texture"])
+            texture = shape["texture"]
+            slot = self._texture(resource["label"], texture["format"], texture["size"], texture["layers"])
         else:
             usage = _UPLOADED if content is not None else _PARAMETER if origin == "parameter" else _WRITTEN
             slot = self._buffer(resource["label"], shape["buffer"]["bytes"], usage)
@@ -63,6 +64,6 @@ class Pool:
         # Copies move whole words.
         return self._device.create_buffer(label=label, size=-(-size // 4) * 4, usage=usage)
 
-    def _texture(self, label: str, format: str, size: list[int], layers: int) -> wgpu.GPUTexture:
+    def _texture(self, label: str, texels: str, size: list[int], layers: int) -> wgpu.GPUTexture:
         usage = wgpu.TextureUsage.RENDER_ATTACHMENT | wgpu.TextureUsage.TEXTURE_BINDING
-        return self._device.create_texture(label=label, size=(*size, layers), format=format, usage=usage)
+        return self._device.create_texture(label=label, size=(*size, layers), format=texels, usage=usage)
