@@ -81,7 +81,8 @@ def _parser() -> argparse.ArgumentParser:
         )
         command.set_defaults(run=run)
         _add_common(command)
-    doctor_command = commands.add_parser("doctor", help="show adapters and what is missing")
+    doctor_command = commands.add_parser("doctor", help="show adapters, what is missing, and what runs where")
+    doctor_command.add_argument("--quick", action="store_true", help="try no technique, which takes some seconds")
     doctor_command.add_argument("--json", action="store_true", help="print JSON")
     doctor_command.set_defaults(run=_doctor)
     return parser
@@ -108,7 +109,7 @@ def _visibility(options: argparse.Namespace) -> int:
 
 
 def _doctor(options: argparse.Namespace) -> int:
-    found = doctor()
+    found = doctor(measure=not options.quick)
     print(json.dumps(found.to_dict(), indent=2) if options.json else found)
     return 0
 

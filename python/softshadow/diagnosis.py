@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from . import _core
+from . import _core, backends
 from .errors import NoAdapterError, SettingsError
 
 
@@ -26,6 +26,8 @@ class Diagnosis:
         What ``device="auto"`` takes.
     advice : list of str
         What is missing or slow, and the command that helps.
+    trials : list of dict
+        What each technique did on each backend, where that was tried; see :class:`softshadow.backends.Trial`.
     """
 
     version: str
@@ -33,6 +35,7 @@ class Diagnosis:
     native: dict[str, Any]
     chosen: str | None
     advice: list[str]
+    trials: list[dict[str, Any]]
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data."""
@@ -45,14 +48,22 @@ class Diagnosis:
             lines += [f"    {name}: {_short(value)}" for name, value in adapter.items() if name != "name"]
         lines.append(f"native: {_chosen(self.native)}")
         lines.append(f"device='auto' takes: {self.chosen or 'nothing'}")
-        return "\n".join(lines + self.advice)
+        shown = ["", *backends.table([backends.Trial(**trial) for trial in self.trials])] if self.trials else []
+        return "\n".join(lines + self.advice + shown)
 
     def __repr__(self) -> str:
         return f"<Diagnosis: {len(self.adapters)} adapters>"
 
 
-def doctor() -> Diagnosis:
-    """Looks at every adapter of the machine; nothing is computed and nothing is raised."""
+def doctor(*, measure: bool = False) -> Diagnosis:
+    """Looks at every adapter of the machine; nothing is raised.
+
+    Parameters
+    ----------
+    measure : bool
+        Whether to try every technique on every backend, which compiles all kernels and takes some seconds. Otherwise
+        nothing is computed.
+    """
     adapters = json.loads(_core.adapters())
     native = json.loads(_core.Context("native").adapter)
     try:
@@ -61,7 +72,10 @@ def doctor() -> Diagnosis:
         chosen, advice = None, [str(error)]
     if not adapters:
         advice.append(_NO_DRIVER)
-    return Diagnosis(version=_core.__version__, adapters=adapters, native=native, chosen=chosen, advice=advice)
+    trials = [trial.to_dict() for trial in backends.matrix()] if measure else []
+    return Diagnosis(
+        version=_core.__version__, adapters=adapters, native=native, chosen=chosen, advice=advice, trials=trials
+    )
 
 
 _NO_DRIVER = (
