@@ -5,13 +5,30 @@
 :class:`Exhibit`.
 """
 
+from collections.abc import Callable
+from importlib.util import find_spec
+
 from .exhibit import Exhibit, Panel
 from .lamps import shapes, textures
 from .matter import counters, foliage, glass
 from .samples import areas, silhouettes, spreads
 from .studio import Studio
 
-EXHIBITS = (silhouettes, spreads, textures, glass, areas, counters, shapes, foliage)
-"""All exhibits in the order in which they hang."""
+EXHIBITS: tuple[Callable[[Studio], Exhibit], ...] = (
+    silhouettes,
+    spreads,
+    textures,
+    glass,
+    areas,
+    counters,
+    shapes,
+    foliage,
+)
+"""All exhibits in the order in which they hang; `guests` only where pygfx is installed."""
+
+if find_spec("pygfx") is not None:
+    from .guests import guests
+
+    EXHIBITS = (*EXHIBITS, guests)
 
 __all__ = ["EXHIBITS", "Exhibit", "Panel", "Studio"]
