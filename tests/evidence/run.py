@@ -6,7 +6,8 @@
 3. Time against error beside the tracers of ``softshadow.bench.peers``, ratios from one run.
 4. The native engine: threads, a city's sky, and ten million random receivers.
 5. Where the time goes, published ratios beside ours, and a scene that moves, by ``softshadow-bench``.
-6. The table of the README: techniques on shipped scenes.
+6. Hosts: the same bits on wgpu-py, Vulkan beside GL, memory of many calls, and what a host costs.
+7. The table of the README: techniques on shipped scenes.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import benchmark
+import hosts
 import native
 import numpy as np
 from edges import against_rays, mutants
@@ -97,6 +99,7 @@ def main() -> int:
         "Natively: threads": lambda: native.threads(chosen.rounds),
         "Natively: a city's sky": lambda: native.sky(1_000_000),
         "Natively: random receivers": lambda: native.random_receivers(2_500_000),
+        **hosts.SECTIONS,
         "Shipped scenes": lambda: shipped_scenes(chosen.rounds, chosen.readme),
     }
     earlier, passed = sections_of(chosen.output), True
