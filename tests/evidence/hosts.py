@@ -173,8 +173,8 @@ def overhead(rounds: int) -> tuple[list[str], bool]:
         ratios = " | ".join(f"{ratio:.2f}" for ratio in other / own)
         table.append(f"| {name} | {own[0]:.0f} | {other[0]:.0f} | {ratios} |")
     text = (
-        f"Whole calls from Python, values copied to the processor on both; the fastest of {rounds} turns. A ratio of at "
-        f"most {MOST_RATIO:g} is allowed."
+        f"Whole calls from Python, values copied to the processor on both; the fastest of {rounds} turns. A ratio of "
+        f"at most {MOST_RATIO:g} is allowed."
     )
     return [text, "", *table, ""], passed
 
