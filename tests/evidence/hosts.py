@@ -20,7 +20,7 @@ from softshadow.wgpu import Host
 DATA = json.loads((Path(__file__).parents[1] / "backends.json").read_text())
 SCENES = ("hall", "toruses", "fork")
 MOST_RATIO = 1.2
-# Of resident memory, from the first tenth of the calls to their end; 1 KiB that leaked in each would be 9 MiB.
+# Of resident memory, between the halves of the calls; 1 KiB that leaked in each would be 5 MiB.
 MOST_GROWTH_MIB = 4.0
 BLENDED = ss.DepthComplexity(samples=64, evaluation="blended")
 # Mesa's lavapipe 22.3 makes another shader of a kernel whose loops end by a uniform, at every call, and keeps it: some
@@ -137,11 +137,12 @@ def memory(calls: int) -> tuple[list[str], bool]:
         command = [sys.executable, "-c", CALLS, *served, str(calls)]
         done = subprocess.run(command, cwd=Path(__file__).parent, capture_output=True, text=True, check=True)
         sizes = [float(line) for line in done.stdout.split()]
-        passed &= len(sizes) == 10 and sizes[-1] - sizes[0] <= MOST_GROWTH_MIB
+        # What is in flight comes and goes: the largest of each half are compared.
+        passed &= len(sizes) == 10 and max(sizes[5:]) - max(sizes[:5]) <= MOST_GROWTH_MIB
         shown = served[2].replace(",", ", ")
         table.append(f"| {name} | {shown} | {calls:,} | {', '.join(f'{size:.1f}' for size in sizes)} |")
     text = (
-        f"Growth from the first to the last: at most {MOST_GROWTH_MIB:g} MiB. On Vulkan only `hard_shadow_map`: Mesa's "
+        f"Growth from one half to the other: at most {MOST_GROWTH_MIB:g} MiB. On Vulkan only `hard_shadow_map`: Mesa's "
         "lavapipe 22.3 itself keeps about 1 MiB of every call to a kernel whose loops end by a uniform, on both hosts."
     )
     return [text, "", *table, ""], passed
