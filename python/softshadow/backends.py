@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib.util
 import json
 import math
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
@@ -16,7 +18,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from .camera import Camera, look_at
-from .errors import SoftShadowError
+from .errors import GpuError, SoftShadowError
 from .lights import RectLight
 from .scene import Mesh, Scene
 from .techniques import TECHNIQUES, DepthComplexity, RayTraced, Technique
@@ -66,9 +68,18 @@ def variants() -> dict[str, Technique]:
 
 def matrix() -> list[Trial]:
     """Tries every technique on every backend; takes some seconds, as all kernels are compiled."""
+    return _tried(_backends()) + _by_wgpu()
+
+
+def tried_on_wgpu() -> list[Trial]:
+    """Tries every technique on wgpu-py, in this process."""
+    return _tried(_wgpu_backends())
+
+
+def _tried(opening: dict[str, Callable[[], Call]]) -> list[Trial]:
     wanted = _lit(_on("native")(RayTraced(samples=64)))
     tried = []
-    for backend, open_call in _backends().items():
+    for backend, open_call in opening.items():
         try:
             call = open_call()
         except Exception as error:
@@ -76,6 +87,26 @@ def matrix() -> list[Trial]:
             continue
         tried += [_try(name, backend, call, technique, wanted) for name, technique in variants().items()]
     return tried
+
+
+def _by_wgpu() -> list[Trial]:
+    """As :func:`tried_on_wgpu`, in a process of its own: two libraries that open GL in one may end it."""
+    if importlib.util.find_spec("wgpu") is None:
+        return []
+    done = subprocess.run([sys.executable, "-c", _CHILD], capture_output=True, text=True)
+    if done.returncode != 0:
+        ended = GpuError(f"wgpu-py ended its process with {done.returncode}")
+        return [_failed(name, "wgpu-py", ended) for name in variants()]
+    return [Trial(**row) for row in json.loads(done.stdout.splitlines()[-1])]
+
+
+_CHILD = """
+import json
+from softshadow import backends
+trials = json.dumps([trial.to_dict() for trial in backends.tried_on_wgpu()])
+print()
+print(trials)
+"""
 
 
 def table(trials: list[Trial]) -> list[str]:
@@ -110,8 +141,6 @@ def _backends() -> dict[str, Callable[[], Call]]:
     found: dict[str, Callable[[], Call]] = {"native": partial(_on, "native")}
     for index, adapter in enumerate(json.loads(_core.adapters())):
         found[f"{adapter['backend']} {index}"] = partial(_on, index)
-    if importlib.util.find_spec("wgpu") is not None:
-        found |= _wgpu_backends()
     return found
 
 

@@ -97,6 +97,7 @@ def test_what_alternatives_say_is_so():
 
 def test_values_that_nobody_computed_are_no_success(monkeypatch):
     native = backends._on("native")
+    monkeypatch.setattr(backends, "_by_wgpu", list)
     monkeypatch.setattr(backends, "_backends", lambda: {"idle": lambda: lambda technique: 0 * native(technique)})
     monkeypatch.setattr(backends, "variants", lambda: {"ray_traced": ss.RayTraced(samples=4)})
     (trial,) = backends.matrix()
@@ -107,6 +108,7 @@ def test_a_backend_that_cannot_be_opened_has_a_row(monkeypatch):
     def broken():
         raise ss.NoAdapterError("gone")
 
+    monkeypatch.setattr(backends, "_by_wgpu", list)
     monkeypatch.setattr(backends, "_backends", lambda: {"broken": broken})
     found = backends.matrix()
     assert [trial.error for trial in found] == ["NoAdapterError"] * len(backends.variants())
