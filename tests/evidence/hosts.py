@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import subprocess
 import sys
@@ -54,8 +55,9 @@ for i in range(int(count)):
 """
 
 
+@functools.cache
 def host() -> Host:
-    """A host on the software Vulkan driver, through wgpu-py."""
+    """A host on software Vulkan, through wgpu-py; only one: looking for adapters when others opened GL may abort."""
     found = [a for a in wgpu.gpu.enumerate_adapters_sync() if a.info["backend_type"] == "Vulkan"]
     software = [a for a in found if a.info["adapter_type"] == "CPU"]
     return Host(software[0].request_device_sync(required_features=["float32-blendable"]))
