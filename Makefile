@@ -53,7 +53,7 @@ $(VENV)/.made: pyproject.toml
 tools: $(VENV)/.tools
 
 $(VENV)/.tools: $(VENV)/.made
-	$(BIN)/python -m pip install --quiet trimesh matplotlib tqdm pytest ruff mypy pillow
+	$(BIN)/python -m pip install --quiet trimesh matplotlib tqdm pytest ruff mypy pillow wgpu pygfx
 	touch $@
 
 extension: venv

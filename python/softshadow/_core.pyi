@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 __all__ = [
     "Camera",
     "Context",
+    "ForeignCall",
+    "ForeignDevice",
     "Light",
     "Scene",
     "__version__",
@@ -24,6 +26,7 @@ __all__ = [
     "png_palette8",
     "png_srgb8",
     "render",
+    "shader",
     "shipped_names",
     "shipped_scene",
     "svg_png",
@@ -112,11 +115,45 @@ class _SceneFile(TypedDict):
     camera: _FileCamera | None
     meters_per_unit: float | None
 
+class _ForeignStage(TypedDict):
+    description: str
+    values: dict[str, bytes]
+
 @final
 class Context:
     def __new__(cls, device: str) -> Context: ...
     @property
     def adapter(self) -> str: ...
+
+@final
+class ForeignDevice:
+    def __new__(cls, described: str) -> ForeignDevice: ...
+    def visibility(
+        self,
+        scene: Scene,
+        lights: list[Light],
+        *,
+        camera: Camera | None,
+        points: NDArray[np.float64] | None,
+        normals: NDArray[np.float64] | None,
+        technique: str,
+        memory_limit: int | None,
+        standard_error: bool,
+    ) -> ForeignCall: ...
+
+@final
+class ForeignCall:
+    @property
+    def results(self) -> list[tuple[str, int]]: ...
+    @property
+    def channels(self) -> int: ...
+    @property
+    def stages(self) -> int: ...
+    @property
+    def superseded(self) -> list[int]: ...
+    def upload(self, key: int) -> bytes: ...
+    def stage(self, index: int, decision: bytes) -> _ForeignStage | None: ...
+    def finish(self, outputs: Sequence[dict[str, bytes]], wall_ms: float, submissions: int) -> str: ...
 
 @final
 class Scene:
@@ -160,6 +197,7 @@ class Camera:
     def with_fov(world_from_camera: _Matrix, fov_y_deg: float, size: tuple[int, int]) -> Camera: ...
 
 def adapters() -> str: ...
+def shader(file: str) -> str: ...
 def look_at(eye: _Vector, target: _Vector, up: _Vector | None = None) -> _Matrix: ...
 def default_material() -> tuple[list[float], float, float, float]: ...
 def technique_defaults() -> str: ...

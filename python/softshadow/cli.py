@@ -103,7 +103,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     add_compare(compare_command)
     compare_command.set_defaults(run=_compare)
-    doctor_command = commands.add_parser("doctor", help="show adapters and what is missing")
+    doctor_command = commands.add_parser("doctor", help="show adapters, what is missing, and what runs where")
+    doctor_command.add_argument("--quick", action="store_true", help="try no technique, which takes some seconds")
     doctor_command.add_argument("--json", action="store_true", help="print JSON")
     doctor_command.set_defaults(run=_doctor)
     return parser
@@ -157,7 +158,7 @@ def _compare(options: argparse.Namespace) -> int:
 
 
 def _doctor(options: argparse.Namespace) -> int:
-    found = doctor()
+    found = doctor(measure=not options.quick)
     print(json.dumps(found.to_dict(), indent=2) if options.json else found)
     return 0
 

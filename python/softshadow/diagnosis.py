@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from . import _core, extras
+from . import _core, backends, extras
 from .errors import NoAdapterError, SettingsError
 from .logs import adapter_words
 
@@ -33,7 +33,9 @@ class Diagnosis:
     extras : dict of str to bool
         The optional packages, and whether they are installed.
     advice : list of str
-        What is missing, and the command that helps.
+        What is missing or slow, and the command that helps.
+    trials : list of dict
+        What each technique did on each backend, where that was tried; see :class:`softshadow.backends.Trial`.
     """
 
     version: str
@@ -42,6 +44,7 @@ class Diagnosis:
     chosen: str | None
     extras: dict[str, bool]
     advice: list[str]
+    trials: list[dict[str, Any]]
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data."""
@@ -59,14 +62,22 @@ class Diagnosis:
         lines.append(
             "extras: " + ", ".join(f"{name} {'yes' if there else 'no'}" for name, there in self.extras.items())
         )
-        return "\n".join([*lines, *(f"advice: {words}" for words in self.advice)])
+        lines += [f"advice: {words}" for words in self.advice]
+        shown = ["", *backends.table([backends.Trial(**trial) for trial in self.trials])] if self.trials else []
+        return "\n".join(lines + shown)
 
     def __repr__(self) -> str:
         return f"<Diagnosis: {len(self.adapters)} adapters>"
 
 
-def doctor() -> Diagnosis:
-    """Looks at every adapter of the machine; nothing is computed, and what fails is part of the answer.
+def doctor(*, measure: bool = False) -> Diagnosis:
+    """Looks at every adapter of the machine; nothing is raised, and what fails is part of the answer.
+
+    Parameters
+    ----------
+    measure : bool
+        Whether to try every technique on every backend, which compiles all kernels and takes some seconds. Otherwise
+        nothing is computed.
 
     Returns
     -------
@@ -82,6 +93,7 @@ def doctor() -> Diagnosis:
         advice.append(f"SOFTSHADOW_DEVICE={os.environ['SOFTSHADOW_DEVICE']} overrides device='auto'")
     if all(adapter["backend"] == "gl" for adapter in adapters):
         advice.append(f"{_NO_DRIVER if not adapters else _ONLY_GL}; {driver_command(_os_release())}")
+    trials = [trial.to_dict() for trial in backends.matrix()] if measure else []
     return Diagnosis(
         version=_core.__version__,
         adapters=adapters,
@@ -89,6 +101,7 @@ def doctor() -> Diagnosis:
         chosen=chosen,
         extras=extras.installed(),
         advice=advice,
+        trials=trials,
     )
 
 

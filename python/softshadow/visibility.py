@@ -23,7 +23,6 @@ from .result_files import arrays_of, channels_of, columns_of, names_of
 from .scene import Scene
 from .techniques import DepthComplexity, RayTraced, Technique, technique_json
 
-
 ErrorNorm = Literal["rmse", "p99", "max"]
 """How errors are measured: root mean square, 99th percentile or largest."""
 

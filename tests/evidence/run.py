@@ -9,6 +9,7 @@
 6. ``max_error`` on a hundred random scenes: whether it holds, and whether its choice is the fastest.
 7. Shipped scenes on this machine, kept in ``crates/softshadow_bench/results``; all that is kept makes the README's
    table.
+8. Hosts: the same bits on wgpu-py, Vulkan beside GL, memory of many calls, and what a host costs.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from pathlib import Path
 
 import benchmark
 import bound
+import hosts
 import maps_penumbra
 import native
 import numpy as np
@@ -103,6 +105,7 @@ def main() -> int:
         "Natively: a city's sky": lambda: native.sky(1_000_000),
         "Natively: random receivers": lambda: native.random_receivers(2_500_000),
         "An error is asked for": lambda: bound.section(100, 512),
+        **hosts.SECTIONS,
         "Shipped scenes": lambda: shipped_scenes(chosen.rounds, chosen.readme),
     }
     earlier, passed = sections_of(chosen.output), True

@@ -156,6 +156,21 @@ def test_the_umbra_of_a_penumbra_map_never_shrinks():
     assert (errors > 0.1).mean() < 0.01
 
 
+def test_pygfx_shows_soft_shadows_that_are_darker_and_nowhere_brighter():
+    if "guests" not in gallery.EXHIBITS:
+        pytest.skip("pygfx is not installed: the exhibit 'guests' is not tested")
+    plain, soft, hard = (exhibit("guests")[name].image.astype(int) for name in ("plain", "soft", "map"))
+    # pygfx smooths outlines by what differs beside them.
+    assert np.mean(soft > plain + 1) < 0.03
+    darker = (plain - soft).max(axis=-1)
+    assert 0.03 < np.mean(darker > 60) < 0.5
+    # Penumbrae: more steps between light and shadow than a shadow map has.
+    between = [
+        np.mean(((plain - image).max(axis=-1) > 8) & ((plain - image).max(axis=-1) < 60)) for image in (soft, hard)
+    ]
+    assert between[0] > 1.5 * between[1]
+
+
 def test_false_colours():
     signs = colors.signed(np.array([[-2.0, -1, 0, 1, np.nan]]))[0].astype(int)
     np.testing.assert_array_equal(signs[0], signs[1])

@@ -2,18 +2,16 @@
 
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::time::Instant;
 
 use softshadow_engine::{AdapterChoice, WgpuEngine};
 use softshadow_native::{NativeEngine, NativeSettings};
 use softshadow_plan::{AdapterInfo, DeviceKind, Engine};
 use softshadow_scene::{Light, Receivers, Scene};
-use softshadow_techniques::{OccluderContents, SceneContents, Technique};
+use softshadow_techniques::Technique;
 
 use crate::choose::calibration::{Calibration, Factors};
 use crate::error::Error;
-use crate::info::Preparation;
-use crate::scene_cache::SceneCache;
+use crate::scene_cache::{Prepared, SceneCache};
 
 /// Which device computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -143,14 +141,6 @@ pub(crate) struct Device {
 /// Scenes and techniques whose costs are remembered.
 const KEPT_FACTORS: usize = 32;
 
-/// A scene and what hides each light of a call, as the device reads them.
-pub(crate) struct Prepared {
-    pub(crate) contents: Arc<SceneContents>,
-    /// One a light, where the technique wants them.
-    pub(crate) occluders: Vec<Arc<OccluderContents>>,
-    pub(crate) preparation: Preparation,
-}
-
 impl Device {
     fn open(opening: Opening) -> Result<Self, Error> {
         let engine = engine(opening)?;
@@ -217,25 +207,13 @@ impl Device {
     /// The scene as the device reads it, and with `lights` what hides each: from the cache where it was used lately, from an earlier
     /// frame of a scene that moves, or made anew.
     pub(crate) fn prepare(&self, scene: &Scene, receivers: &Receivers, lights: &[Light]) -> Result<Prepared, Error> {
-        // Without a vertex the frame is that of the points.
-        let bounds = match receivers {
-            Receivers::Points(points) => points_bounds(points.positions()),
-            Receivers::Camera(_) => None,
-        };
         let engine = self.engine()?;
-        let mut cache = lock(&self.scenes);
-        let started = Instant::now();
-        let mut preparation = Preparation::default();
-        let contents = cache.contents(scene, bounds, engine.host().limits.storage_binding_bytes, &mut preparation);
-        let occluders = cache.occluders(scene, &contents, lights, &mut preparation);
-        let superseded = cache.superseded();
-        drop(cache);
-        preparation.preparation_ms = started.elapsed().as_secs_f64() * 1e3;
+        let (prepared, superseded) = lock(&self.scenes).prepare(scene, receivers, lights, &engine.host());
         // It would wait for another thread's run.
         if !superseded.is_empty() {
             engine.forget(&superseded);
         }
-        Ok(Prepared { contents, occluders: occluders?, preparation })
+        prepared
     }
 }
 
@@ -244,13 +222,6 @@ fn engine(opening: Opening) -> Result<Arc<dyn Engine>, Error> {
         Opening::Adapter(choice) => Arc::new(WgpuEngine::new(choice)?),
         Opening::Native => Arc::new(NativeEngine::new(NativeSettings::default())),
     })
-}
-
-fn points_bounds(points: &[[f64; 3]]) -> Option<([f64; 3], [f64; 3])> {
-    let first = *points.first()?;
-    Some(points.iter().fold((first, first), |(low, high), p| {
-        ([0, 1, 2].map(|k| p[k].min(low[k])), [0, 1, 2].map(|k| p[k].max(high[k])))
-    }))
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

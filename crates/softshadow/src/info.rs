@@ -19,8 +19,8 @@ pub struct Info {
     pub lights: usize,
     /// Receivers asked for.
     pub receivers: usize,
-    /// Receivers that see anything at all.
-    pub valid_receivers: usize,
+    /// Receivers that see anything at all; unknown where results stay on the device.
+    pub valid_receivers: Option<usize>,
     /// Receivers for which rays were traced, added up over lights, passes and sub-scenes; the others have nothing between them
     /// and the light.
     pub traced_receivers: u64,

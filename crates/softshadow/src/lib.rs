@@ -21,6 +21,7 @@ mod compare;
 mod context;
 pub mod drawing;
 mod error;
+mod foreign;
 pub mod image_file;
 mod info;
 mod light_points;
@@ -32,10 +33,12 @@ pub use choose::{BoundNotMet, Candidate, Choice, ErrorKind, Goal, Limit, visibil
 pub use compare::{ComparedLight, Comparison, ComparisonRow, compare};
 pub use context::{Context, DeviceChoice, adapters};
 pub use error::Error;
+pub use foreign::{ForeignCall, ForeignDevice};
 pub use info::{Info, Preparation};
 pub use light_points::{LightPoints, light_points};
 pub use render::{Picture, PictureOptions, render};
 pub use softshadow_measure as measure;
+pub use softshadow_plan as plan;
 pub use softshadow_plan::{AdapterInfo, DeviceKind, PassTime, Timing};
 pub use softshadow_scene::{
     Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, STRETCH_LIMIT,

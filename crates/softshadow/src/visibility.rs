@@ -2,9 +2,8 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
-use softshadow_plan::{Content, ContentKey, Host, PassWork, RunReport, StageReport, Timing};
+use softshadow_plan::{AdapterInfo, Host, PassWork, RunReport, StageReport, Timing};
 use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::depth_complexity::LIST_COUNTS;
 use softshadow_techniques::depth_complexity::blended::{LARGEST_COUNTS, Largest};
@@ -16,13 +15,14 @@ use softshadow_techniques::parts::shading::COLOR;
 use softshadow_techniques::penumbra_map::STRAYS;
 use softshadow_techniques::ray_traced::TRACE_COUNTS;
 use softshadow_techniques::{
-    Block, OccluderContents, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
+    Block, ReceiverSource, SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
 };
 
 use crate::Progress;
-use crate::context::{Context, Device, Prepared};
+use crate::context::{Context, Device};
 use crate::error::Error;
 use crate::info::{Info, Preparation, notes};
+use crate::scene_cache::Prepared;
 
 /// What a caller may want beside the values, and how much memory a call may take.
 #[derive(Debug, Clone, PartialEq)]
@@ -136,103 +136,118 @@ pub(crate) fn run(
     picture: Option<Shading>,
     on_progress: Progress<'_>,
 ) -> Result<(Visibility, Vec<[f32; 4]>), Error> {
+    let engine = device.engine()?;
+    let host = engine.host();
+    check_call(lights, receivers, technique, &host)?;
+    check_results(lights.len(), receivers, technique, options)?;
+    let hidden = hidden_lights(lights, receivers, technique);
+    let prepared = device.prepare(scene, receivers, hidden)?;
+    let contents = &prepared.contents;
+    technique.check_scene(contents)?;
+    let channels = channels_of(lights);
+    let notes = notes(scene, lights, technique, &contents.local).into_iter().chain(device.stands_in()).collect();
+    let mut collector =
+        Collector::new(device.adapter(), notes, lights, receivers, technique, options, contents, channels, true);
+    collector.result.info.preparation = prepared.preparation.clone();
+    let Some(program) = program(&prepared, lights, receivers, technique, options, picture, host)? else {
+        return Ok(collector.finish(RunReport::default()));
+    };
+    collector.describe(&program);
+    let uploads = prepared.uploads();
+    let total = program.stages() as u64;
+    let mut done = 0;
+    let report = engine.run(&program, &uploads, options.timing, &mut |stage: Option<StageReport<'_>>| {
+        if let Some(stage) = &stage {
+            done += 1;
+            collector.add_stage(&program, stage);
+        }
+        on_progress(done, total)
+    })?;
+    collector.check(technique)?;
+    if report.stages as u64 != total {
+        return Err(Error::Gpu(format!("only {} of {total} stages ran", report.stages)));
+    }
+    Ok(collector.finish(report))
+}
+
+/// What is checked before anything is made.
+pub(crate) fn check_call(
+    lights: &[Light],
+    receivers: &Receivers,
+    technique: &Technique,
+    host: &Host,
+) -> Result<(), Error> {
     technique.check()?;
-    let source = source_of(receivers);
     if lights.is_empty() {
         return Err(Error::Settings("at least one light is needed".into()));
     }
-    let engine = device.engine()?;
-    let host = engine.host();
-    technique.check_call(source, lights, &host)?;
+    technique.check_call(source_of(receivers), lights, host)?;
     if let Receivers::Camera(camera) = receivers {
         let (needed, limit) = (u64::from(camera.size()[0].max(camera.size()[1])), u64::from(host.limits.texture_size));
         if needed > limit {
             return Err(Error::TooLarge { what: "pixels of the image's longer side".into(), needed, limit });
         }
     }
-    check_results(lights.len(), receivers, technique, options)?;
+    Ok(())
+}
+
+/// The lights for which a call has to know what hides them.
+pub(crate) fn hidden_lights<'a>(lights: &'a [Light], receivers: &Receivers, technique: &Technique) -> &'a [Light] {
     let wants_occluders = technique.wants_occluders() && receivers.count() > 0;
-    let hidden: &[Light] = if wants_occluders { lights } else { &[] };
-    let Prepared { contents, occluders, preparation } = device.prepare(scene, receivers, hidden)?;
-    technique.check_scene(&contents)?;
-    let channels = channels_of(lights);
-    let mut collector = Collector::new(device, scene, lights, receivers, technique, options, &contents, channels);
-    collector.result.info.preparation = preparation;
+    if wants_occluders { lights } else { &[] }
+}
+
+/// Channels of a value: three where a light of the call has a texture.
+pub(crate) fn channels_of(lights: &[Light]) -> usize {
+    if lights.iter().any(|l| l.texture().is_some()) { 3 } else { 1 }
+}
+
+/// Samples of a technique that has them, and so a standard error.
+pub(crate) fn samples_of(technique: &Technique) -> Option<u32> {
+    match technique {
+        Technique::RayTraced(settings) => Some(settings.samples),
+        Technique::DepthComplexity(settings) => Some(settings.samples),
+        _ => None,
+    }
+}
+
+pub(crate) fn source_of(receivers: &Receivers) -> ReceiverSource<'_> {
+    match receivers {
+        Receivers::Camera(camera) => ReceiverSource::Camera(camera),
+        Receivers::Points(points) => ReceiverSource::Points(points),
+    }
+}
+
+/// The checked program of a call; `None` where no receiver sees anything.
+pub(crate) fn program<'a>(
+    prepared: &'a Prepared,
+    lights: &'a [Light],
+    receivers: &'a Receivers,
+    technique: &'a Technique,
+    options: &Options,
+    picture: Option<Shading>,
+    host: Host,
+) -> Result<Option<VisibilityProgram<'a>>, Error> {
+    let (contents, channels, source) = (&prepared.contents, channels_of(lights), source_of(receivers));
     let sees_nothing = matches!(receivers, Receivers::Camera(_)) && contents.local.sub_scenes.is_empty();
     if receivers.count() == 0 || sees_nothing {
-        return Ok(collector.finish(RunReport::default()));
+        return Ok(None);
     }
-    if let Technique::DepthComplexity(settings) = technique {
-        collector.result.info.occluder_units = occluders.iter().map(|o| settings.unit_used(o)).collect();
-    }
-    let touching = occluders.iter().filter_map(|o| o.touching.as_ref());
-    collector.result.info.touching_triangles = touching.map(|t| t.count as usize).sum();
-    if let (Technique::PenumbraMap(_), count @ 1..) = (technique, collector.result.info.touching_triangles) {
-        let note = format!("{count} triangles touch a ball of light: penumbra_map gives them hard shadows");
-        collector.result.info.notes.push(note);
-    }
-    collector.result.info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
-    collector.result.info.triangles_behind = occluders.iter().map(|o| o.triangles_behind).sum();
     let wants = Wants { standard_error: options.standard_error, sample_masks: options.sample_masks, picture };
-    let program = program(technique, &contents, lights, &occluders, source, wants, host, options)?;
+    let most = receivers_per_block(technique, options, channels, picture.is_some(), &host, source.row(), contents)?;
+    let program = VisibilityProgram {
+        technique,
+        scene: contents,
+        lights,
+        occluders: &prepared.occluders,
+        receivers: source,
+        blocks: blocks(source.count(), source.row(), technique.halo_rows() as usize, most),
+        channels: channels as u32,
+        wants,
+        host,
+    };
     program.check()?;
-    if let Some(task) = program.task(0) {
-        collector.result.info.plan = program.plan(task, &[]).explain();
-    }
-    collector.result.info.blocks = program.blocks.len();
-    let everything = contents.contents().chain(occluders.iter().flat_map(|o| o.contents()));
-    let uploads: BTreeMap<ContentKey, Content> = everything.map(|c| (c.key, c.clone())).collect();
-    let total = program.stages() as u64;
-    let mut done = 0;
-    let report = engine.run(&program, &uploads, options.timing, &mut |stage: Option<StageReport<'_>>| {
-        if let Some(stage) = &stage {
-            done += 1;
-            if let Some(task) = program.task(stage.index) {
-                collector.add(program.blocks[task.block], task.light, &stage.outputs);
-            }
-            // The plan of a later stage follows from what the first one found.
-            if let (0, Some(task), Some(found)) =
-                (stage.index, program.task(1).filter(|task| task.stage == 1), stage.outputs.get(LARGEST_COUNTS))
-            {
-                collector.result.info.plan += &program.plan(task, &records(found)).explain();
-            }
-        }
-        on_progress(done, total)
-    })?;
-    if collector.overflowed > 0 {
-        let count = collector.overflowed;
-        return Err(Error::Gpu(format!(
-            "{count} receivers have more semi-opaque layers before them than sums of depth_complexity hold; use ray_traced"
-        )));
-    }
-    if collector.unfinished > 0 {
-        let count = collector.unfinished;
-        return Err(Error::Gpu(match technique {
-            Technique::DepthComplexity(_) if collector.result.info.occluder_units.contains(&"edges") => format!(
-                "{count} receivers have more silhouette edges before them than fit: the scene is too dense for edges; use \
-                 depth_complexity with unit triangles, or use ray_traced"
-            ),
-            Technique::DepthComplexity(_) => format!(
-                "{count} receivers have more triangles before them than can be tried: the scene is too dense for depth_complexity; \
-                 use ray_traced"
-            ),
-            _ => format!(
-                "the driver ended {count} rays before they were done: the scene is too dense for its limit on loops; use another \
-                 device, or split the scene"
-            ),
-        }));
-    }
-    if collector.astray > 0 {
-        let count = collector.astray;
-        return Err(Error::Gpu(format!(
-            "{count} receivers stand too far from the middle of their pixels for wedges to reach them, on triangles thinner than a \
-             pixel; use evaluation 'tiled'"
-        )));
-    }
-    if report.stages as u64 != total {
-        return Err(Error::Gpu(format!("only {} of {total} stages ran", report.stages)));
-    }
-    Ok(collector.finish(report))
+    Ok(Some(program))
 }
 
 /// What the results of a call may take.
@@ -257,39 +272,6 @@ fn check_results(lights: usize, receivers: &Receivers, technique: &Technique, op
     Ok(())
 }
 
-/// The program of a call.
-#[expect(clippy::too_many_arguments, reason = "everything that a program is made of")]
-fn program<'a>(
-    technique: &'a Technique,
-    scene: &'a SceneContents,
-    lights: &'a [Light],
-    occluders: &'a [Arc<OccluderContents>],
-    receivers: ReceiverSource<'a>,
-    wants: Wants,
-    host: Host,
-    options: &Options,
-) -> Result<VisibilityProgram<'a>, Error> {
-    let channels = channels_of(lights);
-    let picture = wants.picture.is_some();
-    let most = receivers_per_block(technique, options, channels, picture, &host, receivers.row(), scene)?;
-    Ok(VisibilityProgram {
-        technique,
-        scene,
-        lights,
-        occluders,
-        receivers,
-        blocks: blocks(receivers.count(), receivers.row(), technique.halo_rows() as usize, most),
-        channels: channels as u32,
-        wants,
-        host,
-    })
-}
-
-/// Channels of a value: three where any light has a texture.
-fn channels_of(lights: &[Light]) -> usize {
-    if lights.iter().any(|l| l.texture().is_some()) { 3 } else { 1 }
-}
-
 /// The work of a call, pass by pass, without running it: that of its first stage, and how many such stages there are.
 pub(crate) fn work(
     device: &Device,
@@ -298,29 +280,17 @@ pub(crate) fn work(
     receivers: &Receivers,
     technique: &Technique,
 ) -> Result<(Vec<PassWork>, usize), Error> {
-    let (source, options) = (source_of(receivers), Options::default());
     let host = device.engine()?.host();
-    technique.check()?;
-    technique.check_call(source, lights, &host)?;
-    let hidden: &[Light] = if technique.wants_occluders() { lights } else { &[] };
-    let Prepared { contents, occluders, .. } = device.prepare(scene, receivers, hidden)?;
-    technique.check_scene(&contents)?;
-    technique.check_occluders(&occluders)?;
-    let sees_nothing = matches!(receivers, Receivers::Camera(_)) && contents.local.sub_scenes.is_empty();
-    if receivers.count() == 0 || sees_nothing {
+    check_call(lights, receivers, technique, &host)?;
+    let prepared = device.prepare(scene, receivers, hidden_lights(lights, receivers, technique))?;
+    technique.check_scene(&prepared.contents)?;
+    technique.check_occluders(&prepared.occluders)?;
+    let program = program(&prepared, lights, receivers, technique, &Options::default(), None, host)?;
+    let Some((program, task)) = program.and_then(|program| program.task(0).map(|task| (program, task))) else {
         return Ok((Vec::new(), 0));
-    }
-    let program = program(technique, &contents, lights, &occluders, source, Wants::default(), host, &options)?;
-    let Some(task) = program.task(0) else { return Ok((Vec::new(), 0)) };
+    };
     let found = program.blocks[task.block].count as f64;
     Ok((program.plan(task, &[]).work(found), program.stages()))
-}
-
-fn source_of(receivers: &Receivers) -> ReceiverSource<'_> {
-    match receivers {
-        Receivers::Camera(camera) => ReceiverSource::Camera(camera),
-        Receivers::Points(points) => ReceiverSource::Points(points),
-    }
 }
 
 /// Rays that a block may need at most, but for a block of a single row: some seconds on a slow software driver. A caller can stop
@@ -367,8 +337,8 @@ fn records<T: bytemuck::Pod>(bytes: &[u8]) -> Cow<'_, [T]> {
 }
 
 /// Puts the blocks' outputs where they belong.
-struct Collector<'a> {
-    result: Visibility,
+pub(crate) struct Collector<'a> {
+    pub(crate) result: Visibility,
     colors: Vec<[f32; 4]>,
     frame: LocalFrame,
     caller_ids: &'a [u32],
@@ -384,30 +354,27 @@ struct Collector<'a> {
 
 impl<'a> Collector<'a> {
     #[expect(clippy::too_many_arguments, reason = "everything that a result reports")]
-    fn new(
-        device: &Device,
-        scene: &Scene,
+    pub(crate) fn new(
+        adapter: &AdapterInfo,
+        notes: Vec<String>,
         lights: &[Light],
         receivers: &Receivers,
         technique: &Technique,
         options: &Options,
         contents: &'a SceneContents,
         channels: usize,
+        reads_values: bool,
     ) -> Self {
-        let count = receivers.count() as usize;
+        let count = if reads_values { receivers.count() as usize } else { 0 };
         let size = lights.len() * count * channels;
-        let sampled = match technique {
-            Technique::RayTraced(settings) => Some(settings.samples),
-            Technique::DepthComplexity(settings) => Some(settings.samples),
-            _ => None,
-        };
+        let sampled = samples_of(technique);
         let has_error = sampled.is_some();
         let info = Info {
-            adapter: device.adapter().clone(),
+            adapter: adapter.clone(),
             technique: technique.clone(),
             lights: lights.len(),
-            receivers: count,
-            valid_receivers: 0,
+            receivers: receivers.count() as usize,
+            valid_receivers: None,
             traced_receivers: 0,
             area_receivers: 0,
             silhouette_edges: 0,
@@ -424,7 +391,7 @@ impl<'a> Collector<'a> {
             zero_area_triangles: contents.local.dropped.zero_area,
             unresolved_triangles: contents.local.dropped.below_resolution,
             invisible_triangles: contents.local.dropped.invisible,
-            notes: notes(scene, lights, technique, &contents.local).into_iter().chain(device.stands_in()).collect(),
+            notes,
             error_kind: if has_error { "statistical" } else { "none" },
             standard_error: None,
             choice: None,
@@ -457,6 +424,71 @@ impl<'a> Collector<'a> {
         let frame = contents.local.frame;
         let caller_ids = &contents.local.caller_ids;
         Self { result, colors: Vec::new(), frame, caller_ids, unfinished: 0, overflowed: 0, astray: 0, unmapped: 0 }
+    }
+
+    /// Says what a program is going to do.
+    pub(crate) fn describe(&mut self, program: &VisibilityProgram<'_>) {
+        let (info, occluders) = (&mut self.result.info, program.occluders);
+        if let Technique::DepthComplexity(settings) = program.technique {
+            info.occluder_units = occluders.iter().map(|o| settings.unit_used(o)).collect();
+        }
+        let touching = occluders.iter().filter_map(|o| o.touching.as_ref());
+        info.touching_triangles = touching.map(|t| t.count as usize).sum();
+        if let (Technique::PenumbraMap(_), count @ 1..) = (program.technique, info.touching_triangles) {
+            info.notes.push(format!("{count} triangles touch a ball of light: penumbra_map gives them hard shadows"));
+        }
+        info.cut_triangles = occluders.iter().map(|o| o.cut_triangles).sum();
+        info.triangles_behind = occluders.iter().map(|o| o.triangles_behind).sum();
+        info.plan = program.task(0).map_or_else(String::new, |task| program.plan(task, &[]).explain());
+        info.blocks = program.blocks.len();
+    }
+
+    /// Adds what a stage found.
+    pub(crate) fn add_stage(&mut self, program: &VisibilityProgram<'_>, stage: &StageReport<'_>) {
+        if let Some(task) = program.task(stage.index) {
+            self.add(program.blocks[task.block], task.light, &stage.outputs);
+        }
+        // The plan of a later stage follows from what the first one found.
+        if let (0, Some(task), Some(found)) =
+            (stage.index, program.task(1).filter(|task| task.stage == 1), stage.outputs.get(LARGEST_COUNTS))
+        {
+            self.result.info.plan += &program.plan(task, &records(found)).explain();
+        }
+    }
+
+    /// Fails where receivers were left unfinished.
+    pub(crate) fn check(&self, technique: &Technique) -> Result<(), Error> {
+        if self.overflowed > 0 {
+            let count = self.overflowed;
+            return Err(Error::Gpu(format!(
+                "{count} receivers have more semi-opaque layers before them than sums of depth_complexity hold; use ray_traced"
+            )));
+        }
+        if self.unfinished > 0 {
+            let count = self.unfinished;
+            return Err(Error::Gpu(match technique {
+                Technique::DepthComplexity(_) if self.result.info.occluder_units.contains(&"edges") => format!(
+                    "{count} receivers have more silhouette edges before them than fit: the scene is too dense for edges; use \
+                     depth_complexity with unit triangles, or use ray_traced"
+                ),
+                Technique::DepthComplexity(_) => format!(
+                    "{count} receivers have more triangles before them than can be tried: the scene is too dense for depth_complexity; \
+                     use ray_traced"
+                ),
+                _ => format!(
+                    "the driver ended {count} rays before they were done: the scene is too dense for its limit on loops; use another \
+                     device, or split the scene"
+                ),
+            }));
+        }
+        if self.astray > 0 {
+            let count = self.astray;
+            return Err(Error::Gpu(format!(
+                "{count} receivers stand too far from the middle of their pixels for wedges to reach them, on triangles thinner than a \
+                 pixel; use evaluation 'tiled'"
+            )));
+        }
+        Ok(())
     }
 
     fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Cow<'_, [u8]>>) {
@@ -544,7 +576,7 @@ impl<'a> Collector<'a> {
             let count = self.unmapped;
             self.result.info.notes.push(format!("{count} receivers are not on what penumbra_map shows there, and lit"));
         }
-        self.result.info.valid_receivers = valid.iter().filter(|v| **v).count();
+        self.result.info.valid_receivers = Some(valid.iter().filter(|v| **v).count());
         self.result.info.add_run(report);
         (self.result, self.colors)
     }

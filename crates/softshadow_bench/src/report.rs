@@ -71,7 +71,7 @@ pub(crate) struct Row<'a> {
     reference: &'a Technique,
     reference_standard_error: Option<f64>,
     receivers: usize,
-    valid_receivers: usize,
+    valid_receivers: Option<usize>,
     traced_receivers: u64,
     area_receivers: u64,
     silhouette_edges: u64,

@@ -10,6 +10,7 @@ mod compare;
 mod context;
 mod detached;
 mod errors;
+mod foreign;
 mod image;
 mod light;
 mod light_points;
@@ -29,6 +30,8 @@ mod _core {
     use super::compare::compare;
     #[pymodule_export]
     use super::context::{Context, adapters};
+    #[pymodule_export]
+    use super::foreign::{ForeignCall, ForeignDevice, shader};
     #[pymodule_export]
     use super::image::{exr, png_grey16, png_palette8, png_srgb8, svg_png};
     #[pymodule_export]

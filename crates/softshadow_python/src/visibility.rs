@@ -82,7 +82,7 @@ pub(crate) fn receivers_of(
     }
 }
 
-fn lights_of(lights: &[Py<Light>]) -> Vec<softshadow::Light> {
+pub(crate) fn lights_of(lights: &[Py<Light>]) -> Vec<softshadow::Light> {
     lights.iter().map(|light| light.get().0.clone()).collect()
 }
 

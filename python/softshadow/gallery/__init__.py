@@ -1,8 +1,8 @@
 """The gallery: what soft shadows and this library's techniques look like, side by side and with measured numbers.
 
-``softshadow gallery --output gallery`` makes all exhibits, after the figures of Forest, Barthe and Paulin 2008
-and of Wyman and Hansen 2003. An exhibit is a function from a :class:`Studio`, which says how large pictures are and how good references, to an
-:class:`Exhibit`.
+``softshadow gallery --output gallery`` makes all exhibits, after the figures of Forest, Barthe and Paulin 2008 and of
+Wyman and Hansen 2003. An exhibit is a function from a :class:`Studio`, which says how large pictures are and how good
+references, to an :class:`Exhibit`.
 """
 
 from .exhibit import Exhibit, Panel

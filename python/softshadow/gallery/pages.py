@@ -6,6 +6,7 @@ import json
 import math
 import time
 from collections.abc import Callable, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -34,13 +35,19 @@ EXHIBITS: dict[str, Callable[[Studio], Exhibit]] = {
         concavities,
     )
 }
-"""Every exhibit by its name, in the order in which they hang."""
+"""Every exhibit by its name, in the order in which they hang; `guests` only where pygfx is installed."""
+
+if find_spec("pygfx") is not None:
+    from .guests import guests
+
+    EXHIBITS["guests"] = guests
 
 _INTRODUCTION = """\
 # Gallery
 
 Made by `softshadow gallery`, after the figures of V. Forest, L. Barthe, M. Paulin, "Accurate Shadows by Depth
-Complexity Sampling", 2008, and of C. Wyman, C. Hansen, "Penumbra Maps", 2003. Milliseconds are those of one whole picture by compiled kernels on a prepared scene, taken
+Complexity Sampling", 2008, and of C. Wyman, C. Hansen, "Penumbra Maps", 2003.
+Milliseconds are those of one whole picture by compiled kernels on a prepared scene, taken
 once; RMSE is that of visibility over the penumbra, against a reference of many rays. In differences red is too bright,
 blue too dark. Times are those of {device}."""
 
