@@ -1,10 +1,15 @@
 //! Embeds every file of `shaders_wgsl/` by its path from there. Linking and validation happen at first use and in tests.
+//!
+//! The folder beside this file is a link to that of the workspace, so that a package of this crate holds the files themselves.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 fn main() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shaders_wgsl");
+    // A checkout on a system without links has a file that names the folder.
+    let folders = ["shaders_wgsl", "../../shaders_wgsl"].map(|path| Path::new(env!("CARGO_MANIFEST_DIR")).join(path));
+    let root =
+        folders.into_iter().find(|path| path.is_dir()).expect("the crate's folder holds the shaders or a link to them");
     println!("cargo::rerun-if-changed={}", root.display());
     let mut files = Vec::new();
     collect(&root, &mut files);

@@ -17,10 +17,12 @@ from .camera import Camera, look_at
 from .comparison import Comparison, compare
 from .diagnosis import Diagnosis, doctor
 from .errors import (
+    BoundNotMet,
     GpuError,
     GpuOutOfMemory,
     Interrupted,
     MeasureError,
+    MissingExtra,
     NoAdapterError,
     OutputError,
     SceneError,
@@ -34,11 +36,12 @@ from .light_samples import LightPoints, light_points
 from .lights import DiscLight, Light, PolygonLight, RectLight, SphereLight, SunLight
 from .picture import Picture, render
 from .scene import Mesh, Scene
-from .scene_file import SceneFile, load
-from .techniques import DepthComplexity, HardShadowMap, OcclusionCamera, RayTraced, Technique
+from .scene_file import SceneFile, from_trimesh, load
+from .techniques import DepthComplexity, HardShadowMap, OcclusionCamera, PenumbraMap, RayTraced, Technique
 from .visibility import Visibility, visibility
 
 __all__ = [
+    "BoundNotMet",
     "Camera",
     "Comparison",
     "DepthComplexity",
@@ -52,9 +55,11 @@ __all__ = [
     "LightPoints",
     "MeasureError",
     "Mesh",
+    "MissingExtra",
     "NoAdapterError",
     "OcclusionCamera",
     "OutputError",
+    "PenumbraMap",
     "Picture",
     "PolygonLight",
     "RayTraced",
@@ -74,6 +79,7 @@ __all__ = [
     "__version__",
     "compare",
     "doctor",
+    "from_trimesh",
     "light_points",
     "load",
     "look_at",

@@ -1,4 +1,5 @@
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TypedDict, final
 
 import numpy as np
@@ -7,10 +8,13 @@ from numpy.typing import NDArray
 __all__ = [
     "Camera",
     "Context",
+    "ForeignCall",
+    "ForeignDevice",
     "Light",
     "Scene",
     "__version__",
     "adapters",
+    "cache_folder",
     "check_technique",
     "compare",
     "default_material",
@@ -19,12 +23,16 @@ __all__ = [
     "load_scene_file",
     "look_at",
     "png_grey16",
+    "png_palette8",
     "png_srgb8",
     "render",
+    "shader",
     "shipped_names",
     "shipped_scene",
+    "svg_png",
     "technique_defaults",
     "visibility",
+    "visibility_within",
 ]
 
 __version__: str
@@ -54,6 +62,11 @@ class _PictureArrays(TypedDict):
     linear: NDArray[np.float32]
     srgb: NDArray[np.uint8]
     visibility: _VisibilityArrays
+
+class _ComparisonArrays(TypedDict):
+    measured: str
+    reference_values: NDArray[np.float32]
+    values: list[NDArray[np.float32]]
 
 class _LightPointArrays(TypedDict):
     parameters: NDArray[np.float32]
@@ -102,11 +115,45 @@ class _SceneFile(TypedDict):
     camera: _FileCamera | None
     meters_per_unit: float | None
 
+class _ForeignStage(TypedDict):
+    description: str
+    values: dict[str, bytes]
+
 @final
 class Context:
     def __new__(cls, device: str) -> Context: ...
     @property
     def adapter(self) -> str: ...
+
+@final
+class ForeignDevice:
+    def __new__(cls, described: str) -> ForeignDevice: ...
+    def visibility(
+        self,
+        scene: Scene,
+        lights: list[Light],
+        *,
+        camera: Camera | None,
+        points: NDArray[np.float64] | None,
+        normals: NDArray[np.float64] | None,
+        technique: str,
+        memory_limit: int | None,
+        standard_error: bool,
+    ) -> ForeignCall: ...
+
+@final
+class ForeignCall:
+    @property
+    def results(self) -> list[tuple[str, int]]: ...
+    @property
+    def channels(self) -> int: ...
+    @property
+    def stages(self) -> int: ...
+    @property
+    def superseded(self) -> list[int]: ...
+    def upload(self, key: int) -> bytes: ...
+    def stage(self, index: int, decision: bytes) -> _ForeignStage | None: ...
+    def finish(self, outputs: Sequence[dict[str, bytes]], wall_ms: float, submissions: int) -> str: ...
 
 @final
 class Scene:
@@ -150,6 +197,7 @@ class Camera:
     def with_fov(world_from_camera: _Matrix, fov_y_deg: float, size: tuple[int, int]) -> Camera: ...
 
 def adapters() -> str: ...
+def shader(file: str) -> str: ...
 def look_at(eye: _Vector, target: _Vector, up: _Vector | None = None) -> _Matrix: ...
 def default_material() -> tuple[list[float], float, float, float]: ...
 def technique_defaults() -> str: ...
@@ -159,6 +207,8 @@ def shipped_scene(name: str) -> _ShippedScene: ...
 def load_scene_file(path: str) -> _SceneFile: ...
 def png_grey16(values: NDArray[np.float32], size: tuple[int, int]) -> bytes: ...
 def png_srgb8(colors: NDArray[np.uint8], size: tuple[int, int]) -> bytes: ...
+def png_palette8(places: NDArray[np.uint8], palette: NDArray[np.uint8], size: tuple[int, int]) -> bytes: ...
+def svg_png(svg: str, scale: float) -> bytes: ...
 def exr(channels: Sequence[tuple[str, NDArray[np.float32]]], size: tuple[int, int], info: str) -> bytes: ...
 def visibility(
     context: Context,
@@ -175,6 +225,24 @@ def visibility(
     sample_masks: bool,
     progress: _Progress | None,
 ) -> _VisibilityArrays: ...
+def visibility_within(
+    context: Context,
+    scene: Scene,
+    lights: list[Light],
+    *,
+    camera: Camera | None,
+    points: NDArray[np.float64] | None,
+    normals: NDArray[np.float64] | None,
+    max_error: float | None,
+    max_ms: float | None,
+    error_norm: str,
+    confidence: float | None,
+    memory_limit: int | None,
+    standard_error: bool,
+    receivers: bool,
+    progress: _Progress | None,
+) -> tuple[_VisibilityArrays, str | None]: ...
+def cache_folder() -> Path | None: ...
 def render(
     context: Context,
     scene: Scene,
@@ -200,7 +268,7 @@ def compare(
     reference: str,
     repeats: int,
     progress: _Progress | None,
-) -> str: ...
+) -> _ComparisonArrays: ...
 def light_points(
     scene: Scene,
     light: Light,

@@ -101,7 +101,22 @@ class Camera(ByValue):
         fov_y_deg: float,
         size: tuple[int, int],
     ) -> Camera:
-        """A camera at `eye` that looks at `target`; see :func:`softshadow.look_at`."""
+        """A camera at `eye` that looks at `target`.
+
+        Parameters
+        ----------
+        eye, target, up
+            As in :func:`softshadow.look_at`.
+        fov_y_deg : float
+            Vertical field of view in degrees.
+        size : (width, height)
+            In pixels.
+
+        Raises
+        ------
+        SceneError, SettingsError
+            As :func:`softshadow.look_at`, and for angles and sizes that have no meaning.
+        """
         try:
             pose = look_at(eye, target, up)
         except SceneError as error:
@@ -118,14 +133,22 @@ class Camera(ByValue):
             Read, never changed.
         transform : (4, 4) float
             ``scene.camera_transform``, or what ``camera.look_at`` returns: the pose, against its docstring.
+
+        Raises
+        ------
+        SceneError, SettingsError
+            For a transform that is no pose, and a resolution that has no meaning.
         """
         # Its resolution is (width, height), against its docstring. K is left alone: its setter changes it.
         # Asking a copy keeps what trimesh works out and caches off the caller's camera.
-        own = copy.copy(camera)
-        width, height = (int(n) for n in own.resolution)
-        fx, fy = own.focal
+        try:
+            own = copy.copy(camera)
+            width, height = (int(n) for n in own.resolution)
+            fx, fy = (float(n) for n in own.focal)
+        except (AttributeError, TypeError, ValueError):
+            raise SceneError(f"camera: a trimesh camera expected, got {type(camera).__name__}") from None
         intrinsics = np.array([[fx, 0.0, width / 2], [0.0, fy, height / 2], [0.0, 0.0, 1.0]])
-        return cls(world_from_camera=np.asarray(transform), K=intrinsics, size=(width, height))
+        return cls(world_from_camera=matrix("transform", transform), K=intrinsics, size=(width, height))
 
     def _built(self) -> _core.Camera:
         """The checked camera of the core."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import SceneError, SettingsError, SoftShadowError
+
+T = TypeVar("T")
 
 UINT32_MAX = 2**32 - 1
 
@@ -51,6 +54,13 @@ def whole(what: str, value: object, *, low: int = 0, high: int = UINT32_MAX) -> 
     return number
 
 
+def flag(what: str, value: object) -> bool:
+    """True or False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise SettingsError(f"{what}: True or False expected, got {_type_name(value)}")
+    return bool(value)
+
+
 def memory_limit_bytes(value: object) -> int | None:
     """A number of bytes, or None for the library's own limit."""
     return None if value is None else whole("memory_limit", value, low=1, high=2**64 - 1)
@@ -77,7 +87,11 @@ def matrix(what: str, value: ArrayLike) -> NDArray[np.float64]:
 
 def image_size(value: object) -> tuple[int, int]:
     """``(width, height)`` in pixels."""
-    if not isinstance(value, (tuple, list, np.ndarray)) or len(value) != 2:
+    if (
+        not isinstance(value, (tuple, list, np.ndarray))
+        or (isinstance(value, np.ndarray) and value.ndim != 1)
+        or len(value) != 2
+    ):
         raise SceneError(f"camera size: (width, height) expected, got {value!r}")
     width, height = value
     return whole("camera width", width, low=1), whole("camera height", height, low=1)
@@ -85,9 +99,28 @@ def image_size(value: object) -> tuple[int, int]:
 
 def choice(what: str, value: object, choices: tuple[str, ...]) -> str:
     """One of the named choices."""
-    if value in choices:
+    # An array compares with each of them.
+    if isinstance(value, str) and value in choices:
         return str(value)
     raise SettingsError(f"{what}: choose one of {', '.join(map(repr, choices))}, got {value!r}")
+
+
+def items(what: str, value: Iterable[T]) -> tuple[T, ...]:
+    """What an iterable gives."""
+    try:
+        return tuple(value)
+    except TypeError:
+        raise SceneError(f"{what}: an iterable expected, got {_type_name(value)}") from None
+
+
+def text(what: str, value: object) -> str:
+    """A name or a note, which files and the core hold as UTF-8."""
+    words = str(value)
+    try:
+        words.encode()
+    except UnicodeEncodeError:
+        raise SceneError(f"{what}: {words!r:.80} is no text: it holds half of a surrogate pair") from None
+    return words
 
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:

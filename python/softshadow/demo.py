@@ -19,6 +19,7 @@ from .camera import Camera, look_at
 from .comparison import compare
 from .device import context, quiet_driver
 from .lights import Light, RectLight
+from .logs import adapter_words
 from .picture import render
 from .scene import Mesh, Scene
 from .techniques import DepthComplexity, HardShadowMap, RayTraced, Technique
@@ -89,8 +90,7 @@ def _show(name: str, scene: Scene, light: Light, camera: Camera, folder: Path, d
     )
     info = {"visibility": result.info, "comparison": json.loads(table.to_json())}
     (folder / f"{name}_info.json").write_text(json.dumps(info, indent=2))
-    adapter = result.info["adapter"]
-    print(f"{name}: {adapter['name']} ({adapter['backend']}, {adapter['device_type']})")
+    print(f"{name}: {adapter_words(result.info['adapter'])}")
     for row in table.rows:
         settings, error = row["technique"], row["penumbra"]["rmse"] if row["penumbra"] else float("nan")
         words = settings["name"] + (f" with {settings['samples']} samples" if "samples" in settings else "")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
+import tempfile
 import threading
 import warnings
 from typing import Any, Literal
 
-from . import _core
+from . import _core, logs
 from .errors import SettingsError, SoftwareAdapterWarning
 
 Device = Literal["auto", "gpu", "native", "software"] | int
@@ -25,7 +27,9 @@ def context(device: Device | str) -> _core.Context:
     key = (os.getpid(), name)
     with _locks.setdefault(os.getpid(), threading.Lock()):
         if key not in _contexts:
+            _quiet_layer()
             _contexts[key] = _core.Context(name)
+            logs.device_chosen(name, json.loads(_contexts[key].adapter))
         return _contexts[key]
 
 
@@ -40,12 +44,21 @@ def announce(device: Device | str, adapter: dict[str, Any]) -> None:
 
 
 def quiet_driver() -> None:
-    """For the library's own programs: Mesa's device-selection layer complains where there is no desktop session."""
-    os.environ.setdefault("VK_LOADER_LAYERS_DISABLE", "VK_LAYER_MESA_device_select")
+    """For the library's own programs: drivers complain on stderr where there is no desktop session."""
+    _quiet_layer()
+    # Wayland looks here for a desktop, and finds none.
+    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
+
+
+def _quiet_layer() -> None:
+    """Mesa's device-selection layer prefers a desktop's device, which the library chooses itself, and prints an error
+    for every device that is opened where there is no desktop."""
+    if "XDG_RUNTIME_DIR" not in os.environ:
+        os.environ.setdefault("VK_LOADER_LAYERS_DISABLE", "VK_LAYER_MESA_device_select")
 
 
 def _name(device: object) -> str:
-    if isinstance(device, str):
+    if isinstance(device, str) and device.isascii():
         return device
     if isinstance(device, int) and not isinstance(device, bool) and device >= 0:
         return str(device)

@@ -1,5 +1,12 @@
 """Everything that softshadow raises. Each class also has the base that Python users expect to catch."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .visibility import Visibility
+
 
 class SoftShadowError(Exception):
     """Any error of this library; raised itself only for internal errors."""
@@ -33,8 +40,21 @@ class GpuOutOfMemory(GpuError, MemoryError):
     """The device has too little memory; a smaller ``memory_limit`` makes smaller blocks."""
 
 
+class MissingExtra(SoftShadowError, ImportError):
+    """A call needs a package that is not installed; the message has the command that installs it."""
+
+
 class MeasureError(SoftShadowError, ValueError):
     """Results that cannot be compared."""
+
+
+class BoundNotMet(SoftShadowError, RuntimeError):
+    """No technique keeps the error or the time that was asked for; `best` is the result that comes closest.
+
+    What it reaches is in ``best.info["choice"]``.
+    """
+
+    best: Visibility | None = None
 
 
 class Interrupted(SoftShadowError, RuntimeError):
@@ -46,4 +66,4 @@ class OutputError(SoftShadowError, OSError):
 
 
 class SoftwareAdapterWarning(UserWarning):
-    """``device="auto"`` found no graphics card and took a software adapter, which is much slower."""
+    """``device="auto"`` found no graphics card to draw triangles and took a software adapter, which is much slower."""

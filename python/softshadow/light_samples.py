@@ -65,6 +65,10 @@ def light_points(
     pattern, seed, spread, tile
         As in :class:`RayTraced`.
 
+    Returns
+    -------
+    LightPoints
+
     Raises
     ------
     SceneError, SettingsError

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from .by_value import ByValue, set_fields
-from .checks import choice, color, floats, frozen, matrix, real
+from .checks import choice, color, floats, frozen, matrix, real, text
 from .errors import SceneError
 
 WHITE = (1.0, 1.0, 1.0)
@@ -223,7 +223,7 @@ class SunLight(Light):
             diameter_deg=real("sun diameter_deg", self.diameter_deg),
             up=choice("sun up", self.up, ("y", "z")),
             radiance=color("light radiance", self.radiance),
-            name=str(self.name),
+            name=text("light name", self.name),
         )
         self._built()
 
@@ -246,7 +246,7 @@ def _pose_and_radiance(light: Any) -> dict[str, object]:
     return {
         "world_from_light": matrix("world_from_light", light.world_from_light),
         "radiance": color("light radiance", light.radiance),
-        "name": str(light.name),
+        "name": text("light name", light.name),
     }
 
 

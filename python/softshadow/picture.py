@@ -11,17 +11,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
+from . import _core, logs, notebook, plots
 from .camera import Camera
 from .checks import choice, color, memory_limit_bytes, real
 from .device import Device, announce, context
 from .errors import SettingsError
 from .files import output_format, write, write_csv, write_npz
 from .lights import Light, built_lights
+from .progress import Progress, callback
 from .result_files import arrays_of, names_of, places_of, rgb
 from .scene import Scene
 from .techniques import RayTraced, Technique, technique_json
-from .visibility import Progress, Visibility, callback, receivers_of, scene_of, shaped
+from .visibility import Visibility, receivers_of, scene_of, shaped
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -62,6 +63,11 @@ class Picture:
         ``.exr``
             Channels `R`, `G`, `B` of linear float32; `info` as JSON text in the attribute `softshadow`.
 
+        Parameters
+        ----------
+        path : path
+            Where to; the case of its extension does not matter.
+
         Raises
         ------
         SettingsError
@@ -87,6 +93,28 @@ class Picture:
         height, width, _ = self.srgb.shape
         return _core.png_srgb8(self.srgb.ravel(), (width, height))
 
+    def _repr_html_(self) -> str:
+        return notebook.page(self._repr_png_(), self.srgb.shape, self.info)
+
+    def plot(self, *, axes: Any = None) -> Any:
+        """Shows the picture with matplotlib, which the extra ``[plot]`` installs.
+
+        Parameters
+        ----------
+        axes : matplotlib Axes, optional
+            Where to draw; else a figure is made.
+
+        Returns
+        -------
+        matplotlib Axes
+
+        Raises
+        ------
+        MissingExtra
+            Where matplotlib is not installed.
+        """
+        return plots.picture(self, axes)
+
     def __repr__(self) -> str:
         height, width, _ = self.srgb.shape
         return f"<Picture of {width} × {height} pixels>"
@@ -103,7 +131,7 @@ def render(
     background: ArrayLike | None = None,
     device: Device | str = "auto",
     memory_limit: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Picture:
     """A picture of the scene under direct light.
 
@@ -115,7 +143,7 @@ def render(
         Their contributions are added.
     camera : Camera
         The view.
-    technique : RayTraced, DepthComplexity, OcclusionCamera or HardShadowMap
+    technique : RayTraced, DepthComplexity, PenumbraMap, OcclusionCamera or HardShadowMap
         How visibility is computed.
     shading : {"integrated", "modulated"}
         Light summed over the samples that are visible, or the unshadowed sum times visibility.
@@ -132,7 +160,7 @@ def render(
 
     Raises
     ------
-    SceneError, SettingsError, TooLargeError, NoAdapterError, GpuError, Interrupted
+    SceneError, SettingsError, TooLargeError, NoAdapterError, GpuError, Interrupted, MissingExtra
         As :func:`visibility`.
     """
     built, several = built_lights(lights)
@@ -150,11 +178,12 @@ def render(
         exposure=stops,
         background=None if background is None else color("background", background),
         memory_limit=memory_limit_bytes(memory_limit),
-        progress=callback(progress),
+        progress=callback(progress, "render", lambda _: technique),
     )
     names = names_of(lights if isinstance(lights, Sequence) else [lights])
     seen = shaped(arrays["visibility"], (len(built),) if several else (), where.shape, names)
     announce(device, seen.info["adapter"])
+    logs.call_done("render", seen.info)
     return Picture(
         linear=arrays["linear"].reshape(*where.shape, 3),
         srgb=arrays["srgb"].reshape(*where.shape, 3),

@@ -74,14 +74,19 @@ def layers_of(result: Visibility) -> dict[str, NDArray[Any]]:
     for word, array in (("visibility", result.values), ("standard_error", result.standard_error)):
         if array is None:
             continue
-        by_light = array.reshape(len(result.light_names), result.valid.size, -1)
-        for name, values in zip(result.light_names, by_light, strict=True):
+        for name, values in zip(result.light_names, by_light(result, array), strict=True):
             full = word if result.light_names == ("light0",) else f"{word}.{name}"
             if values.shape[1] == 1:
                 layers[full] = values[:, 0]
             else:
                 layers |= {f"{full}.{channel}": values[:, k] for k, channel in enumerate(_RGB)}
     return layers
+
+
+def by_light(result: Visibility, array: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Values or standard errors as (lights, receivers, channels), of which there may be none."""
+    lights, receivers = len(result.light_names), result.valid.size
+    return array.reshape(lights, receivers, array.size // (lights * receivers) if receivers else 1)
 
 
 def rgb(linear: NDArray[np.float32]) -> dict[str, NDArray[np.float32]]:

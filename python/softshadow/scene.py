@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass
+from importlib import import_module
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .by_value import ByValue, set_fields
-from .checks import color, floats, frozen, integers, real, vector
+from .checks import color, floats, frozen, integers, items, real, text, vector
 from .errors import SceneError
+from .extras import needed
 
 if TYPE_CHECKING:
     import trimesh
@@ -71,7 +73,7 @@ class Mesh(ByValue):
             raise SceneError(f"{what}: triangle {triangle} refers to vertex {vertex}, but {there_are}")
         set_fields(
             self,
-            name=str(self.name),
+            name=text("mesh name", self.name),
             vertices=frozen(vertices),
             faces=frozen(faces.astype(np.uint32)),
             base_color=color(f"{what} base_color", self.base_color),
@@ -91,6 +93,8 @@ class Scene:
     ----------
     meshes : iterable of Mesh
         Triangle ids count through them in order.
+    notes : iterable of str
+        What a source held that is left out: :attr:`notes`, which every result repeats.
 
     Raises
     ------
@@ -103,8 +107,8 @@ class Scene:
     __slots__ = ("_core_scene", "_meshes", "_notes")
 
     def __init__(self, meshes: Iterable[Mesh] = (), *, notes: Iterable[str] = ()) -> None:
-        self._meshes: tuple[Mesh, ...] | None = tuple(meshes)
-        self._notes = tuple(notes)
+        self._meshes: tuple[Mesh, ...] | None = items("scene", meshes)
+        self._notes = tuple(text("scene notes", note) for note in items("scene notes", notes))
         if not all(isinstance(mesh, Mesh) for mesh in self._meshes):
             raise SceneError("scene: an iterable of Mesh expected; see Scene.from_arrays")
         self._core_scene: _core.Scene | None = _built(self._meshes, self._notes)
@@ -115,6 +119,11 @@ class Scene:
 
         What is left out is listed in :attr:`notes`. Lights and camera of a ``scene.json`` come with
         :func:`softshadow.load`.
+
+        Parameters
+        ----------
+        path : path
+            The file; its extension, in any case, decides the format.
 
         Raises
         ------
@@ -172,16 +181,21 @@ class Scene:
 
         Every instance in a scene's graph becomes a mesh of its own, with its transform and its node's name.
         Base colours are taken where one material or one colour covers a mesh; what is left out is listed in
-        :attr:`notes`.
+        :attr:`notes`. A scene's camera comes with :func:`softshadow.from_trimesh`.
+
+        Parameters
+        ----------
+        source : trimesh.Trimesh or trimesh.Scene
+            Coordinates are taken as they are.
 
         Raises
         ------
         SceneError
             For anything but a ``Trimesh`` or a ``trimesh.Scene``, and as :meth:`from_arrays`.
+        MissingExtra
+            Where trimesh is not installed.
         """
-        from .trimesh_reader import read
-
-        meshes, notes = read(source)
+        meshes, notes = trimesh_reader().read(source)
         return cls(meshes, notes=notes)
 
     def with_vertices(self, vertices: Iterable[ArrayLike | None]) -> Scene:
@@ -251,11 +265,19 @@ class Scene:
         return f"<Scene: {len(self.meshes)} meshes, {self.triangle_count} triangles>"
 
 
+def trimesh_reader() -> Any:
+    """The module that reads trimesh objects; it is imported when it is used."""
+    needed("trimesh", "from_trimesh")
+    return import_module("softshadow.trimesh_reader")
+
+
 def path_name(path: object) -> str:
     """A path as text."""
     try:
-        return os.fsdecode(path)  # type: ignore[arg-type]
-    except TypeError:
+        name = os.fsdecode(path)  # type: ignore[arg-type]
+        os.fsencode(name)
+        return name
+    except (TypeError, UnicodeEncodeError):
         raise SceneError(f"scene: a path expected, got {path!r:.80}") from None
 
 

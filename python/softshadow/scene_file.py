@@ -1,10 +1,11 @@
-"""Files that hold lights and a camera beside their meshes."""
+"""Files, and trimesh scenes, that hold lights or a camera beside their meshes."""
 
 from __future__ import annotations
 
 import math
 import os
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,12 +14,15 @@ from .camera import Camera
 from .checks import image_size, vector
 from .errors import SceneError
 from .lights import DiscLight, Light, PolygonLight, RectLight, SphereLight, SunLight
-from .scene import Scene, path_name
+from .scene import Scene, path_name, trimesh_reader
+
+if TYPE_CHECKING:
+    import trimesh
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SceneFile:
-    """What :func:`load` reads.
+    """What :func:`load` and :func:`from_trimesh` read.
 
     Attributes
     ----------
@@ -27,9 +31,9 @@ class SceneFile:
     lights : tuple of lights
         In the file's order and with its names; empty for all formats but ``scene.json``.
     camera : Camera or None
-        The view of a ``scene.json`` that has one.
+        The view of a ``scene.json`` or trimesh scene that has one.
     meters_per_unit : float or None
-        Metres a world unit, where the format says: 1 for glTF, not known for OBJ, PLY and STL.
+        Metres a world unit, where the source says: 1 for glTF, not known for OBJ, PLY and STL.
     """
 
     scene: Scene
@@ -94,6 +98,37 @@ def load(path: str | os.PathLike[str]) -> SceneFile:
         lights=tuple(_light(light) for light in found["lights"]),
         camera=camera or None,
         meters_per_unit=found["meters_per_unit"],
+    )
+
+
+def from_trimesh(source: trimesh.Trimesh | trimesh.Scene) -> SceneFile:
+    """All that a trimesh object holds: meshes as :meth:`Scene.from_trimesh` reads them, a scene's camera, its unit.
+
+    The object is read and never changed: a scene that was given no camera has none, though trimesh would make one when
+    asked. Its lights have no area and are left out, which :attr:`Scene.notes` says.
+
+    Parameters
+    ----------
+    source : trimesh.Trimesh or trimesh.Scene
+        In any unit; coordinates are taken as they are.
+
+    Returns
+    -------
+    SceneFile
+
+    Raises
+    ------
+    SceneError
+        For anything else, and as :meth:`Scene.from_trimesh`; for a camera that stands nowhere in the scene's graph.
+    MissingExtra
+        Where trimesh is not installed.
+    """
+    reader = trimesh_reader()
+    return SceneFile(
+        scene=Scene.from_trimesh(source),
+        lights=(),
+        camera=None if (view := reader.camera(source)) is None else Camera.from_trimesh(*view),
+        meters_per_unit=reader.meters_per_unit(source),
     )
 
 

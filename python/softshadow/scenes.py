@@ -15,7 +15,19 @@ from .scene import Scene
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ShippedScene:
-    """A scene with the light and the camera that it is meant for. Y is up, lengths are metres."""
+    """A scene with the light and the camera that it is meant for. Y is up, lengths are metres.
+
+    Attributes
+    ----------
+    name, description : str
+        What it is called, and what it shows.
+    scene : Scene
+        Its meshes.
+    light : light
+        The light.
+    camera : Camera
+        The view.
+    """
 
     name: str
     description: str
@@ -35,12 +47,21 @@ def names() -> list[str]:
 def load(name: str) -> ShippedScene:
     """A shipped scene by its name.
 
+    Parameters
+    ----------
+    name : str
+        One of :func:`names`.
+
+    Returns
+    -------
+    ShippedScene
+
     Raises
     ------
     SceneError
         For a name that is none of :func:`names`.
     """
-    if not isinstance(name, str):
+    if not isinstance(name, str) or name not in names():
         raise SceneError(f"scene: one of {', '.join(names())} expected, got {name!r:.80}")
     source = _core.shipped_scene(name)
     view = source["camera"]

@@ -28,7 +28,31 @@ def read(source: object) -> tuple[list[Mesh], list[str]]:
             meshes.append(_mesh(geometry, str(node), np.asarray(world_from_mesh, dtype=np.float64), notes))
         else:
             notes.append(f"'{node}' left out: {type(geometry).__name__} is no mesh")
+    if lights := getattr(source, "_lights", None):
+        notes.append(f"{len(lights)} lights without an area left out")
     return meshes, notes
+
+
+def camera(source: object) -> tuple[Any, NDArray[np.float64]] | None:
+    """A scene's camera and its pose, where it was given one; asking a scene without one would make one."""
+    if not isinstance(source, trimesh.Scene) or not source.has_camera:
+        return None
+    name = source.camera.name
+    if name not in source.graph.nodes:
+        raise SceneError(f"camera '{name}': it stands nowhere in the scene's graph; set scene.camera_transform")
+    return source.camera, np.array(source.graph[name][0], dtype=np.float64)
+
+
+def meters_per_unit(source: Any) -> float | None:
+    """Metres a unit; None where meshes have none, different ones, or one that trimesh does not know."""
+    geometries = source.geometry.values() if isinstance(source, trimesh.Scene) else [source]
+    units = {geometry.units for geometry in geometries}
+    if len(units) != 1 or None in units:
+        return None
+    try:
+        return float(trimesh.units.unit_conversion(units.pop(), "meters"))
+    except (KeyError, ValueError):
+        return None
 
 
 def _mesh(source: trimesh.Trimesh, name: str, world_from_mesh: NDArray[np.float64], notes: list[str]) -> Mesh:

@@ -4,26 +4,27 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
+from . import _core, logs, notebook, plots
 from .camera import Camera
-from .checks import floats, memory_limit_bytes
+from .checks import flag, floats, memory_limit_bytes, real
 from .device import Device, announce, context
-from .errors import SceneError, SettingsError
+from .errors import BoundNotMet, SceneError, SettingsError
 from .files import output_format, write, write_csv, write_npz
 from .lights import Light, built_lights
+from .progress import Progress, callback
 from .result_files import arrays_of, channels_of, columns_of, names_of
 from .scene import Scene
 from .techniques import DepthComplexity, RayTraced, Technique, technique_json
 
-Progress = Callable[[int, int], object]
-"""Called with ``(done, total)`` between blocks; returning ``False`` stops the work with ``Interrupted``."""
+ErrorNorm = Literal["rmse", "p99", "max"]
+"""How errors are measured: root mean square, 99th percentile or largest."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -38,7 +39,7 @@ class Visibility:
     valid : bool, (H, W) or (points,)
         False only where the camera sees nothing.
     standard_error : float32 like `values`, or None
-        Of the mean over the samples; None where the technique has none or it was not asked for.
+        Of the mean over the samples, as a share; None where the technique has none or it was not asked for.
     positions : float64, (H, W, 3) or (points, 3), or None
         World coordinates of the receivers as they were used.
     normals : float32, (H, W, 3) or (points, 3), or None
@@ -88,6 +89,11 @@ class Visibility:
         ``.G``, ``.B`` where it is coloured; standard errors likewise. OpenEXR knows printable ASCII only: other letters
         of a name become ``_``.
 
+        Parameters
+        ----------
+        path : path
+            Where to; the case of its extension does not matter.
+
         Raises
         ------
         SettingsError
@@ -126,6 +132,32 @@ class Visibility:
         height, width = self.values.shape
         return _core.png_grey16(self.values.ravel(), (width, height))
 
+    def _repr_html_(self) -> str:
+        return notebook.page(self._repr_png_(), self.values.shape, self.info)
+
+    def plot(self, *, axes: Any = None) -> Any:
+        """Draws the values with matplotlib, which the extra ``[plot]`` installs.
+
+        Images are shown in linear grey, or in their colours; points as seen along the axis in which they spread least.
+
+        Parameters
+        ----------
+        axes : matplotlib Axes, optional
+            Where to draw, for a result of one light; else a figure is made.
+
+        Returns
+        -------
+        matplotlib Axes, or for several lights an array of them, one each
+
+        Raises
+        ------
+        MissingExtra
+            Where matplotlib is not installed.
+        SettingsError
+            For `axes` with several lights.
+        """
+        return plots.visibility(self, axes)
+
     def __repr__(self) -> str:
         return f"<Visibility of shape {self.values.shape}>"
 
@@ -137,10 +169,14 @@ def visibility(
     camera: Camera | None = None,
     points: ArrayLike | None = None,
     normals: ArrayLike | None = None,
-    technique: Technique = RayTraced(),  # noqa: B008 - frozen
+    technique: Technique | None = None,
+    max_error: float | None = None,
+    max_ms: float | None = None,
+    error_norm: ErrorNorm = "rmse",
+    confidence: float | None = None,
     device: Device | str = "auto",
     memory_limit: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     standard_error: bool = True,
     receivers: bool = False,
     sample_masks: bool = False,
@@ -160,16 +196,28 @@ def visibility(
     normals : (n, 3) float, optional
         For each point, of any length but zero: light from below the horizon is then not visible. A flat light
         is never visible from behind.
-    technique : RayTraced, DepthComplexity, OcclusionCamera or HardShadowMap
-        How it is computed.
+    technique : RayTraced, DepthComplexity, PenumbraMap, OcclusionCamera or HardShadowMap
+        How it is computed; ``RayTraced()`` unless an error or a time is asked for.
+    max_error : float, optional
+        Takes the fastest technique and settings that keep this error for this scene, instead of `technique`. The
+        result is checked against rays at random receivers; ``info["choice"]`` says how it was chosen, what it reaches,
+        and how that is known: ``certified``, ``statistical`` or ``measured``.
+    max_ms : float, optional
+        Takes the smallest error within so many milliseconds instead, check included.
+    error_norm : {"rmse", "p99", "max"}
+        How errors are measured, over the penumbra and whatever else is wrong by more than 1/255. The largest error can
+        be estimated, and the share of receivers beyond it bounded; promised it cannot be.
+    confidence : float, optional
+        Of statistical bounds; 0.95 unless given.
     device : {"auto", "gpu", "native", "software"} or int
         ``"auto"`` takes a graphics card, else the processor without any driver (``"native"``), and a software driver
         for what draws triangles; the environment variable ``SOFTSHADOW_DEVICE`` overrides it. A number is an index in
         :func:`doctor`.
     memory_limit : int, optional
         Bytes of device memory for one block of receivers.
-    progress : callable, optional
-        Called with ``(done, total)`` between blocks; returning ``False`` stops.
+    progress : True or callable, optional
+        True shows a bar of tqdm's, which the extra ``[progress]`` installs. A callable gets ``(done, total, info)``
+        between blocks, `info` with the `call`, the `technique` and `elapsed_ms`; returning ``False`` stops.
     standard_error : bool
         Whether to return it, where the technique has one.
     receivers : bool
@@ -190,30 +238,70 @@ def visibility(
         For options out of range.
     NoAdapterError, GpuError
         Where no device fits, or it fails.
+    BoundNotMet
+        Where nothing keeps `max_error` or `max_ms`; its `best` is the result that comes closest.
     Interrupted
         When `progress` returned ``False``.
+    MissingExtra
+        Where a bar is asked for and tqdm is not installed.
     """
     built, several = built_lights(lights)
     where = receivers_of(camera, points, normals)
-    decides_all = isinstance(technique, DepthComplexity) or (isinstance(technique, RayTraced) and technique.probes == 0)
-    if sample_masks and not decides_all:
-        raise SettingsError("sample_masks: only RayTraced without probes and DepthComplexity decide every sample")
     given, names = where.points, names_of(lights if isinstance(lights, Sequence) else [lights])
-    arrays = _core.visibility(
-        context(device),
-        scene_of(scene),
-        built,
+    leading = (len(built),) if several else ()
+    masks = flag("sample_masks", sample_masks)
+    common: dict[str, Any] = {
         **where.arguments,
-        technique=technique_json("technique", technique),
-        memory_limit=memory_limit_bytes(memory_limit),
-        standard_error=bool(standard_error),
-        receivers=bool(receivers),
-        sample_masks=bool(sample_masks),
-        progress=callback(progress),
-    )
-    result = shaped(arrays, (len(built),) if several else (), where.shape, names, given)
+        "memory_limit": memory_limit_bytes(memory_limit),
+        "standard_error": flag("standard_error", standard_error),
+        "receivers": flag("receivers", receivers),
+        "progress": callback(progress, "visibility", lambda _: technique),
+    }
+    if max_error is not None or max_ms is not None:
+        goal = _goal(technique, max_error, max_ms, error_norm, confidence, masks)
+        arrays, reason = _core.visibility_within(context(device), scene_of(scene), built, **common, **goal)
+        result = shaped(arrays, leading, where.shape, names, given)
+        if reason is not None:
+            unmet = BoundNotMet(reason)
+            unmet.best = result
+            raise unmet
+    else:
+        technique = RayTraced() if technique is None else technique
+        is_ray_traced = isinstance(technique, RayTraced) and technique.probes == 0
+        if masks and not (is_ray_traced or isinstance(technique, DepthComplexity)):
+            raise SettingsError("sample_masks: only RayTraced without probes and DepthComplexity decide every sample")
+        arrays = _core.visibility(
+            context(device),
+            scene_of(scene),
+            built,
+            **common,
+            technique=technique_json("technique", technique),
+            sample_masks=masks,
+        )
+        result = shaped(arrays, leading, where.shape, names, given)
     announce(device, result.info["adapter"])
+    logs.call_done("visibility", result.info)
     return result
+
+
+def _goal(
+    technique: Technique | None,
+    max_error: float | None,
+    max_ms: float | None,
+    error_norm: str,
+    confidence: float | None,
+    sample_masks: bool,
+) -> dict[str, Any]:
+    """What is asked for instead of a technique."""
+    if technique is not None:
+        raise SettingsError("technique: max_error and max_ms choose it; leave it out")
+    if sample_masks:
+        raise SettingsError("sample_masks: a technique that is chosen may have none; name one")
+    if not isinstance(error_norm, str):
+        raise SettingsError(f"error_norm: 'rmse', 'p99' or 'max' expected, got {error_norm!r}")
+    numbers = {"max_error": max_error, "max_ms": max_ms, "confidence": confidence}
+    checked = {name: None if x is None else real(name, x, SettingsError) for name, x in numbers.items()}
+    return checked | {"error_norm": error_norm}
 
 
 @dataclass(frozen=True)
@@ -250,13 +338,6 @@ def scene_of(scene: object) -> _core.Scene:
     if not isinstance(scene, Scene):
         raise SceneError(f"scene: a softshadow.Scene expected, got {type(scene).__name__}")
     return scene._built()
-
-
-def callback(progress: Progress | None) -> Progress | None:
-    """A progress callback, or none."""
-    if progress is not None and not callable(progress):
-        raise SettingsError(f"progress: a callable (done, total) expected, got {progress!r}")
-    return progress
 
 
 def shaped(

@@ -232,7 +232,7 @@ fn shadowed(receiver: Receiver, horizon: f32) -> f32 {
     let image = image_of(seen.view, seen.axes, seen.position);
     seen.image = image.xy;
     seen.depth = image.z;
-    seen.slack = depth_slack(seen.view, receiver, seen.depth);
+    seen.slack = depth_slack(seen.view, receiver, place_in_view(seen.view, receiver.position));
     let upward = vec2<f32>(dot(seen.axes.x, receiver.normal), dot(seen.axes.y, receiver.normal));
     let corner = texel_of(seen.view, seen.axes, seen.image) - 0.5;
     let part = fract(corner);

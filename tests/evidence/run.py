@@ -6,7 +6,10 @@
 3. Time against error beside the tracers of ``softshadow.bench.peers``, ratios from one run.
 4. The native engine: threads, a city's sky, and ten million random receivers.
 5. Where the time goes, published ratios beside ours, and a scene that moves, by ``softshadow-bench``.
-6. The table of the README: techniques on shipped scenes.
+6. ``max_error`` on a hundred random scenes: whether it holds, and whether its choice is the fastest.
+7. Shipped scenes on this machine, kept in ``crates/softshadow_bench/results``; all that is kept makes the README's
+   table.
+8. Hosts: the same bits on wgpu-py, Vulkan beside GL, memory of many calls, and what a host costs.
 """
 
 from __future__ import annotations
@@ -17,11 +20,14 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import benchmark
+import bound
+import hosts
+import maps_penumbra
 import native
 import numpy as np
+import results
 from edges import against_rays, mutants
 from rays64 import judge
 
@@ -93,10 +99,13 @@ def main() -> int:
         },
         "Where the time goes": lambda: benchmark.passes("bunny", PASSES, chosen.rounds, ("native", "software")),
         "Ratios of the paper": lambda: benchmark.ratios(["bunny", "toruses"], chosen.rounds),
+        "Penumbra maps": lambda: maps_penumbra.penumbra_maps(chosen.rounds),
         "A scene that moves": lambda: benchmark.waving(["bunny", "toruses"], MOVING, frames=10),
         "Natively: threads": lambda: native.threads(chosen.rounds),
         "Natively: a city's sky": lambda: native.sky(1_000_000),
         "Natively: random receivers": lambda: native.random_receivers(2_500_000),
+        "An error is asked for": lambda: bound.section(100, 512),
+        **hosts.SECTIONS,
         "Shipped scenes": lambda: shipped_scenes(chosen.rounds, chosen.readme),
     }
     earlier, passed = sections_of(chosen.output), True
@@ -147,7 +156,8 @@ def time_against_error(
 
 def shipped_scenes(rounds: int, readme: Path) -> tuple[list[str], bool]:
     """The table of the README, and its picture."""
-    table = shipped_table(rounds)
+    results.keep(rounds)
+    table = results.table(list(results.KEPT.glob("*.jsonl")))
     hall = ss.scenes.load("hall")
     fine = ss.RayTraced(samples=256, pattern="low_discrepancy")
     ss.render(hall.scene, hall.light, camera=hall.camera, technique=fine, exposure=0.5).save(
@@ -201,49 +211,6 @@ def against_embree(model: Measured, technique: ss.Technique, device: str) -> tup
         lines.append(f"| {receiver} | {sample} | {' | '.join(word[v] for v in row)} | {near:.2g} |")
     lines += ["", f"Where they differ, {wrong} of ours contradict float64 beyond rounding.", ""]
     return lines, share <= LARGEST_SHARE and wrong == 0
-
-
-def shipped_table(rounds: int) -> list[str]:
-    """Techniques on shipped scenes against 2,048 samples."""
-    lines = [
-        "| scene | technique | ms | RMSE in penumbra | p99 | bias | reference ± |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    techniques = [
-        ss.RayTraced(samples=16),
-        ss.RayTraced(samples=64),
-        ss.RayTraced(samples=64, probes=16),
-        ss.RayTraced(samples=256),
-        ss.DepthComplexity(samples=16),
-        ss.DepthComplexity(samples=64),
-        ss.DepthComplexity(samples=256),
-    ]
-    for name in ("hall", "fork", "toruses"):
-        shipped = ss.scenes.load(name)
-        for here, device in (([ss.HardShadowMap()], "software"), (techniques, "native")):
-            table = ss.compare(
-                shipped.scene,
-                shipped.light,
-                camera=shipped.camera,
-                techniques=here,
-                reference=ss.RayTraced(samples=256, passes=8, pattern="low_discrepancy", seed=7),
-                repeats=rounds,
-                device=device,
-            )
-            lines += [table_row(name, row, table.reference_standard_error) for row in table.rows]
-    return lines
-
-
-def table_row(scene: str, row: dict[str, Any], reference: float | None) -> str:
-    """A technique on a scene."""
-    settings, penumbra = row["technique"], row["penumbra"]
-    words = settings["name"]
-    words += f", {settings['samples']} samples" if "samples" in settings else ""
-    words += f", {settings['probes']} probes" if settings.get("probes") else ""
-    return (
-        f"| {scene} | {words} | {row['median_ms']:.0f} | {penumbra['rmse']:.4f} | {penumbra['p99']:.3f} | "
-        f"{penumbra['bias']:+.4f} | {reference or float('nan'):.4f} |"
-    )
 
 
 if __name__ == "__main__":

@@ -172,6 +172,8 @@ NONSENSE = [
     (lambda: ss.DepthComplexity(unit=None), ss.SettingsError, "unit"),
     (lambda: ss.HardShadowMap(resolution=0), ss.SettingsError, "resolution"),
     (lambda: ss.HardShadowMap(resolution=2**31), ss.SettingsError, "resolution"),
+    (lambda: ss.PenumbraMap(resolution=15), ss.SettingsError, "resolution"),
+    (lambda: ss.PenumbraMap(ramp="smooth"), ss.SettingsError, "light.*linear.*paper"),
     (lambda: ss.OcclusionCamera(resolution=4097), ss.SettingsError, "resolution"),
     (lambda: ss.OcclusionCamera(bias=2.0), ss.SettingsError, "bias"),
     (lambda: ss.OcclusionCamera(bias="much"), ss.SettingsError, "bias"),
@@ -291,6 +293,7 @@ def test_exceptions_have_the_bases_that_python_users_catch():
         ss.NoAdapterError: RuntimeError,
         ss.GpuError: RuntimeError,
         ss.GpuOutOfMemory: MemoryError,
+        ss.MissingExtra: ImportError,
         ss.OutputError: OSError,
     }
     for error, base in bases.items():

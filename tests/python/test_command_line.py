@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import argparse
 import json
+import re
 import subprocess
 import sys
+from itertools import chain
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +16,7 @@ import trimesh
 
 import softshadow as ss
 from conftest import CARD, FLOOR, SQUARE, read_png, visibility
+from softshadow import cli, cli_values
 from softshadow.cli import main
 
 SMALL = ["--size", "24x16", "--device", "software"]
@@ -123,6 +128,8 @@ def test_several_lights_are_added_in_a_picture(tmp_path, mesh_file):
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:evaluation=blended,base=9"], "64 or 256"),
         (["render", "hall", "-o", "a.png", "--technique", "depth-complexity:unit=leaves"], "triangles"),
         (["render", "hall", "-o", "a.png", "--device", "toaster"], "toaster"),
+        (["gallery", "mona-lisa"], "unknown exhibit 'mona-lisa'; there are silhouettes"),
+        (["gallery", "areas", "--size", "4"], "1024x768"),
         ([], "required"),
     ],
 )
@@ -152,10 +159,124 @@ def test_no_device_ends_with_one(capsys, tmp_path):
     assert "999" in capsys.readouterr().err
 
 
+def test_the_gallery_is_a_command(tmp_path):
+    out = tmp_path / "gallery"
+    done = run("gallery", "areas", "glass", "-o", out, "--size", "48x36", "--device", "software", "--json")
+    assert done.returncode == 0, done.stderr
+    made = json.loads(done.stdout)
+    assert list(made["exhibits"]) == ["areas", "glass"]
+    assert made["exhibits"]["areas"]["areas"]["rmse"] < made["exhibits"]["areas"]["samples"]["rmse"]
+    assert made["page"] == str(out / "index.md")
+    assert "llvmpipe" in made["device"]
+    page = (out / "index.md").read_text()
+    pictures = sorted(path.name for path in out.glob("*.png"))
+    assert len(pictures) > 6
+    assert all(f"({name})" in page for name in pictures)
+    assert read_png(out / "areas_areas.png").shape == (36, 48, 3)
+    said = done.stderr.splitlines()
+    assert [line.split(",")[0] for line in said] == ["areas", "glass", f"page {out / 'index.md'}"]
+    assert f"those of {made['device']}." in page
+
+
+def test_progress_is_shown_on_a_terminal_alone(tmp_path, monkeypatch, capsys):
+    arguments = ["visibility", "hall", "-o", str(tmp_path / "a.npy"), *SMALL]
+    assert main(arguments) == 0
+    assert "1 of 1" not in capsys.readouterr().err
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert main(arguments) == 0
+    said = capsys.readouterr()
+    assert "1 of 1" in said.err
+    assert said.out == ""
+
+
+# What an option changes: files, whether anything is printed, what is said of the result.
+CHANGES = {
+    "scene": ["fork"],
+    "-o": ["-o", "other.npy"],
+    "--light": ["--light", "sun:azimuth=40,elevation=60"],
+    "--camera": ["--camera", "eye=9/9/9,target=0/0/0"],
+    "--size": ["--size", "12x9"],
+    "--technique": ["--technique", "hard-shadow-map"],
+    "--device": ["--device", "native"],
+    "--info": ["--info", "info.json"],
+    "--json": ["--json"],
+}
+GALLERY_CHANGES = {"exhibits": ["glass"]} | {name: CHANGES[name] for name in ("-o", "--size", "--device", "--json")}
+MADE = [("render", CHANGES), ("visibility", CHANGES), ("gallery", GALLERY_CHANGES)]
+
+
+def names_of(command: str) -> set[str]:
+    """The arguments of a command, by their first name."""
+    (commands,) = (action for action in cli._parser()._actions if isinstance(action.choices, dict))
+    actions = commands.choices[command]._actions
+    return {(action.option_strings or [action.dest])[0] for action in actions} - {"-h"}
+
+
+def test_every_option_of_every_command_is_known_here():
+    (commands,) = (action for action in cli._parser()._actions if isinstance(action.choices, dict))
+    assert set(commands.choices) == {command for command, _ in MADE} | {"doctor"}
+    for command, changes in MADE:
+        assert names_of(command) == set(changes)
+    assert names_of("doctor") == {"--json"}
+
+
+@pytest.mark.parametrize(("command", "option"), [(command, option) for command, known in MADE for option in known])
+def test_every_option_changes_something(command, option, tmp_path, monkeypatch, capsys):
+    source = {"gallery": ["areas"]}.get(command, ["hall"])
+    base = {"-o": ["-o", "map.npy"], "--size": ["--size", "24x16"], "--device": ["--device", "software"]}
+    change = dict(MADE)[command][option]
+
+    def made(folder: str, *arguments: str) -> tuple[bool, str, dict[str, bytes]]:
+        (tmp_path / folder).mkdir()
+        monkeypatch.chdir(tmp_path / folder)
+        assert main([command, *arguments]) == 0
+        said = capsys.readouterr()
+        words = re.sub(r"\d[\d.]* m?s\b", "", said.err)
+        files = {str(path.relative_to(".")): path for path in sorted(Path().rglob("*.*")) if path.is_file()}
+        pictures = {name: path.read_bytes() for name, path in files.items() if path.suffix in (".npy", ".png")}
+        return bool(said.out), words if option == "--device" else "", dict.fromkeys(files, b"") | pictures
+
+    plain = {"positional": source} | base
+    changed = plain | {option if option.startswith("-") else "positional": change}
+    one, other = (made(name, *chain(*words.values())) for name, words in (("plain", plain), ("changed", changed)))
+    assert one != other
+
+
+PLACED = {"position": "0/3/0", "target": "1/0/0", "up": "0/0/1", "radiance": "3/2/1"}
+WORDS = {
+    "rect": (PLACED | {"width": "2", "height": "2"}, "width=1,height=1,position=0/4/0"),
+    "disc": (PLACED | {"radius": "2"}, "radius=1,position=0/4/0"),
+    "sphere": (PLACED | {"radius": "2"}, "radius=1,position=0/4/0"),
+    "sun": (
+        {"azimuth": "9", "elevation": "9", "diameter": "9", "up": "z", "radiance": "3/2/1"},
+        "azimuth=1,elevation=2",
+    ),
+}
+
+
+@pytest.mark.parametrize(("kind", "word"), [(kind, word) for kind, (words, _) in WORDS.items() for word in words])
+def test_every_word_of_a_light_changes_it(kind, word):
+    words, base = WORDS[kind]
+    with pytest.raises(argparse.ArgumentTypeError, match="unknown 'x'; there are") as error:
+        cli_values.parse_light(f"{kind}:x=1")
+    assert sorted(str(error.value).split("there are ")[1].split(", ")) == sorted(words)
+    before = ",".join(pair for pair in base.split(",") if not pair.startswith(f"{word}="))
+    assert cli_values.parse_light(f"{kind}:{before},{word}={words[word]}") != cli_values.parse_light(f"{kind}:{base}")
+
+
+@pytest.mark.parametrize("word", ["eye=1/2/4", "target=1/0/0", "up=1/0/0", "fov=50"])
+def test_every_word_of_a_camera_changes_it(word):
+    base = {"eye": "1/2/3", "target": "0/0/0"}
+    name, value = word.split("=")
+    text = ",".join(f"{name}={value}" for name, value in (base | {name: value}).items())
+    plain = ",".join(f"{name}={value}" for name, value in base.items())
+    assert cli_values.parse_camera(text)((4, 3)) != cli_values.parse_camera(plain)((4, 3))
+
+
 def test_doctor(capsys):
-    assert main(["doctor"]) == 0
+    assert main(["doctor", "--quick"]) == 0
     assert "device='auto' takes" in capsys.readouterr().out
-    assert main(["doctor", "--json"]) == 0
+    assert main(["doctor", "--quick", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["version"] == ss.__version__
 
 

@@ -86,3 +86,26 @@ def test_what_failed_fails_the_section(recorded):
     benchmark, answer = recorded
     answer(RATIO, FAILURE)
     assert benchmark.ratios(["bunny"], 1)[1] is False
+
+
+def test_kept_lines_become_the_tables_of_documents(recorded, monkeypatch, tmp_path):
+    _, answer = recorded
+    sys.modules.pop("results", None)
+    environment = {"adapter": {"name": "Some CPU (8 lanes)", "device_type": "native"}, "threads": 2}
+    line = PASSES | {
+        "scene": "fork",
+        "technique": {"name": "ray_traced", "samples": 64, "probes": 16},
+        "errors": {"penumbra": {"rmse": 0.0171, "p99": 0.048, "bias": -0.0002}},
+        "reference_standard_error": 0.0012,
+        "environment": environment,
+    }
+    answer(line)
+    import results
+
+    monkeypatch.setattr(results, "measured", lambda *arguments: [line])
+    monkeypatch.setattr(results, "CASES", {"native": ["ray_traced"]})
+    written = results.keep(1, folder=tmp_path)
+    assert [path.name for path in written] == ["native-some-cpu-8-lanes-2-threads.jsonl"]
+    row = "| fork | ray_traced, 64 samples, 16 probes | Some CPU (8 lanes) | 95 | 0.0171 | 0.048 | -0.0002 | 0.0012 |"
+    assert results.table(written)[2:] == [row]
+    sys.modules.pop("results", None)

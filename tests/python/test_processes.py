@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import softshadow as ss
-from conftest import camera_above, light_above, visibility
+from conftest import camera_above, compare, light_above, visibility
 
 DEVICES = pytest.mark.parametrize("device", ["software", "native"])
 BUSY = {"camera": camera_above((64, 64)), "technique": ss.RayTraced(samples=256)}
@@ -101,15 +101,40 @@ def test_progress_counts_up_to_the_total(scene):
         progress=lambda *p: seen.append(p),
     )
     assert len(seen) > 2
-    assert seen == sorted(seen)
-    assert all(0 <= done <= total for done, total in seen)
+    steps = [(done, total) for done, total, _ in seen]
+    assert steps == sorted(steps)
+    assert all(0 <= done <= total for done, total in steps)
+    assert {(info["call"], info["technique"]) for *_, info in seen} == {("visibility", "ray_traced")}
+    elapsed = [info["elapsed_ms"] for *_, info in seen]
+    assert elapsed[0] > 0
+    assert elapsed == sorted(elapsed)
+
+
+def test_a_comparison_says_which_technique_is_at_work(scene):
+    techniques, reference = [ss.RayTraced(samples=1), ss.HardShadowMap(resolution=64)], ss.DepthComplexity(samples=16)
+    seen = []
+    compare(
+        scene,
+        light_above(),
+        camera=camera_above(),
+        techniques=techniques,
+        reference=reference,
+        repeats=2,
+        progress=lambda done, total, info: seen.append((done, total, info["call"], info["technique"])),
+    )
+    assert {total for _, total, *_ in seen} == {1 + 2 * (1 + 2)}
+    assert {call for *_, call, _ in seen} == {"compare"}
+    names = {done: name for done, *_, name in seen}
+    rays, hard = "ray_traced", "hard_shadow_map"
+    assert max(names) == 7, "the end is told, too"
+    assert [names[done] for done in range(7)] == ["depth_complexity", rays, hard, rays, hard, rays, hard]
 
 
 def test_a_progress_callback_stops_the_work(scene):
     settings = {"camera": camera_above((64, 64)), "memory_limit": 50_000}
     calls = []
 
-    def stop(done: int, total: int) -> bool:
+    def stop(done: int, total: int, info: dict[str, object]) -> bool:
         calls.append(done)
         return False
 
@@ -117,12 +142,12 @@ def test_a_progress_callback_stops_the_work(scene):
         visibility(scene, light_above(), progress=stop, **settings)
     assert len(calls) == 1
     with pytest.raises(ZeroDivisionError):
-        visibility(scene, light_above(), progress=lambda done, total: 1 / 0, **settings)
+        visibility(scene, light_above(), progress=lambda *_: 1 / 0, **settings)
     assert visibility(scene, light_above(), **settings).values.shape == (64, 64)
 
 
 def test_ctrl_c_is_heard_between_blocks(scene):
-    def press(done: int, total: int) -> None:
+    def press(*_: object) -> None:
         signal.raise_signal(signal.SIGINT)
 
     # Whoever starts tests in the background may have told them to ignore the key.
@@ -175,7 +200,7 @@ def test_importing_needs_numpy_alone():
     script = """
 import sys
 import softshadow
-print(sorted(sys.modules.keys() & {"trimesh", "PIL", "matplotlib", "scipy", "tqdm"}))
+print(sorted(sys.modules.keys() & {"trimesh", "PIL", "matplotlib", "scipy", "tqdm", "pdoc"}))
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout.strip() == "[]"

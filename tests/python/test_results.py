@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import io
 import json
+import re
+import sys
 
 import numpy as np
 import pytest
 
 import softshadow as ss
 from conftest import CARD, SQUARE, camera_above, compare, light_above, read_png, render, visibility
+from softshadow import diagnosis
 
 
 def test_shapes(scene, floor_points):
@@ -287,6 +290,11 @@ def test_npy_holds_the_values(scene, tmp_path):
     np.testing.assert_array_equal(np.load(tmp_path / "map.npy"), result.values)
 
 
+def test_no_points_are_a_table_without_rows(scene, tmp_path):
+    visibility(scene, light_above(), points=np.empty((0, 3))).save(tmp_path / "none.csv")
+    assert (tmp_path / "none.csv").read_text().splitlines() == ["x,y,z,visibility,standard_error,valid"]
+
+
 def test_what_cannot_be_saved_is_refused(scene, floor_points, tmp_path):
     several = visibility(scene, [light_above()], camera=camera_above())
     points = visibility(scene, light_above(), points=floor_points)
@@ -360,10 +368,10 @@ def test_comparisons(scene):
 def test_defaults_are_those_of_the_library(scene, floor_points):
     from softshadow import _core  # noqa: TID251 - what the defaults are compared with
 
+    every = (ss.RayTraced, ss.HardShadowMap, ss.PenumbraMap, ss.OcclusionCamera, ss.DepthComplexity)
+    kinds: dict[str, type[ss.Technique]] = {kind.name: kind for kind in every}
     for row in json.loads(_core.technique_defaults()):
-        kind = {kind.name: kind for kind in (ss.RayTraced, ss.HardShadowMap, ss.OcclusionCamera, ss.DepthComplexity)}[
-            row["name"]
-        ]
+        kind = kinds[row["name"]]
         assert json.loads(kind().to_json()) == row
     info = visibility(scene, light_above(), points=floor_points).info
     assert info["technique"] == json.loads(ss.RayTraced().to_json())
@@ -376,6 +384,72 @@ def test_doctor_lists_adapters():
     assert found.chosen in str(found)
     assert all(adapter["name"] in str(found) for adapter in found.adapters)
     json.dumps(found.to_dict())
+
+
+def test_doctor_says_what_is_slow_and_known_bad():
+    by_backend = {adapter["backend"]: adapter for adapter in ss.doctor().adapters if adapter["mesa"]}
+    software = by_backend["vulkan"]
+    assert re.fullmatch(r"\d+\.\d+\.\d+", software["mesa"])
+    assert software["mesa"] in software["driver"]
+    said = "\n".join(software["remarks"])
+    for words in ("slow: a driver that computes on the processor", "65,535 steps", "clock", "128 MiB"):
+        assert words in said
+        assert words in str(ss.doctor())
+    if "gl" in by_backend:
+        assert "float32" in "\n".join(by_backend["gl"]["remarks"])
+
+
+def test_doctor_has_nothing_to_remark_on_a_good_card():
+    card = {
+        "name": "card",
+        "backend": "vulkan",
+        "device_type": "gpu",
+        "driver": "NVIDIA 550.1",
+        "storage_binding_bytes": 1 << 31,
+        "texture_size": 32768,
+        "features": ["timestamp-query", "float32-blendable"],
+    }
+    assert diagnosis.described(card) == card | {"mesa": None, "remarks": []}
+    slow = diagnosis.described(card | {"features": [], "storage_binding_bytes": 1 << 27, "backend": "gl"})
+    assert [words.split(":")[0].split(" (")[0] for words in slow["remarks"]] == [
+        "no clock",
+        "does not blend float32",
+        "small storage bindings",
+        "slow to open, and taken only where nothing else answers or by its index",
+    ]
+    assert diagnosis.described(card | {"driver": "radv Mesa 24.1"})["mesa"] == "24.1"
+
+
+@pytest.mark.parametrize(
+    ("release", "command"),
+    [
+        ({"ID": "debian"}, "`apt-get install -y mesa-vulkan-drivers libvulkan1`"),
+        ({"ID": "linuxmint", "ID_LIKE": "ubuntu debian"}, "`apt-get install"),
+        ({"ID": "rocky", "ID_LIKE": "rhel centos fedora"}, "`dnf install"),
+        ({"ID": "arch"}, "`pacman"),
+        ({"ID": "beos"}, "no command is known for this system"),
+        ({}, "no command is known for this system"),
+    ],
+)
+def test_doctor_has_the_command_that_installs_a_driver(release, command, monkeypatch):
+    monkeypatch.setattr(diagnosis, "_os_release", lambda: release)
+    monkeypatch.setattr(diagnosis._core, "adapters", lambda: "[]")
+    found = ss.doctor()
+    assert any(command in words for words in found.advice)
+    assert "no graphics driver" in str(found)
+
+
+def test_doctor_says_what_the_environment_chooses_and_which_extras_are_there(monkeypatch):
+    monkeypatch.delenv("SOFTSHADOW_DEVICE", raising=False)
+    assert ss.doctor().advice == []
+    monkeypatch.setenv("SOFTSHADOW_DEVICE", "toaster")
+    found = ss.doctor()
+    assert found.chosen is None
+    assert "SOFTSHADOW_DEVICE=toaster overrides device='auto'" in str(found)
+    assert found.extras == {"trimesh": True, "plot": True, "progress": True}
+    assert "extras: trimesh yes, plot yes, progress yes" in str(found)
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    assert not ss.doctor().extras["progress"]
 
 
 def test_the_occlusion_camera_is_soft_and_says_what_it_did(scene, floor_points):

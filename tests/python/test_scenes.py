@@ -125,6 +125,66 @@ def test_trimesh_cameras_keep_their_size_and_pose():
     np.testing.assert_allclose(result.positions[rows, columns][valid], hits[valid], atol=1e-4)
 
 
+def test_a_trimesh_scene_hands_its_camera_back():
+    theirs = trimesh.scene.Camera(resolution=(24, 10), fov=(60, 27))
+    pose = ss.look_at((3, 4, 3), (0, 0, 0))
+    floor = trimesh.Trimesh(FLOOR, SQUARE, process=False)
+    source = trimesh.Scene(floor, camera=theirs, camera_transform=pose)
+    found = ss.from_trimesh(source)
+    assert found.camera == ss.Camera.from_trimesh(theirs, pose)
+    assert found.scene.meshes == ss.Scene.from_trimesh(source).meshes
+    assert (found.lights, found.meters_per_unit) == ((), None)
+    assert repr(found) == "<SceneFile: 2 triangles, 0 lights, a camera>"
+    source.units = "inches"
+    assert ss.from_trimesh(source).meters_per_unit == pytest.approx(0.0254)
+    floor.units = "furlongs"
+    assert ss.from_trimesh(floor).meters_per_unit is None
+
+
+def test_a_trimesh_scene_without_a_camera_gets_none():
+    source = trimesh.Scene(trimesh.Trimesh(FLOOR, SQUARE, process=False))
+    before = source.graph.to_flattened()
+    found = ss.from_trimesh(source)
+    assert found.camera is None
+    assert found.scene.notes == ()
+    # trimesh makes cameras and lights when asked for them, and puts them into the graph.
+    assert not source.has_camera
+    assert getattr(source, "_lights", None) is None
+    assert source.graph.to_flattened() == before
+    source.camera = trimesh.scene.Camera(resolution=(24, 10), fov=(60, 27), name="eye")
+    with pytest.raises(ss.SceneError, match=r"camera 'eye'.*camera_transform"):
+        ss.from_trimesh(source)
+
+
+def test_trimesh_lights_have_no_area_and_are_noted():
+    source = trimesh.Scene(trimesh.Trimesh(FLOOR, SQUARE, process=False))
+    source.lights = [trimesh.scene.lighting.PointLight()]
+    assert ss.from_trimesh(source).lights == ()
+    assert ss.Scene.from_trimesh(source).notes == ("1 lights without an area left out",)
+
+
+def test_intrinsics_that_were_set_on_a_trimesh_camera_decide_its_size():
+    theirs = trimesh.scene.Camera(resolution=(24, 10), fov=(60, 27))
+    theirs.K = [[30.0, 0, 50], [0, 30, 20], [0, 0, 1]]
+    assert theirs.resolution.tolist() == [100, 40], "setting K rewrites the resolution"
+    camera = ss.Camera.from_trimesh(theirs, np.eye(4))
+    assert camera.size == (100, 40)
+    np.testing.assert_array_equal(camera.K, theirs.K)
+    np.testing.assert_array_equal(theirs.resolution, [100, 40])
+
+
+def test_what_look_at_of_trimesh_returns_is_a_pose():
+    """Its docstring says the inverse: from world to camera."""
+    theirs = trimesh.scene.Camera(resolution=(24, 10), fov=(60, 27))
+    pose = theirs.look_at(FLOOR, rotation=ss.look_at((3, 4, 3), (0, 0, 0)))
+    camera = ss.Camera.from_trimesh(theirs, pose)
+    assert (camera.world_from_camera[:3, 3] > 0).all(), "it stands on the side from which it was asked to look"
+    seen = visibility(ss.Scene.from_arrays(FLOOR, SQUARE), light_above(), camera=camera)
+    assert seen.valid.any()
+    turned = ss.Camera.from_trimesh(theirs, np.linalg.inv(pose))
+    assert not visibility(ss.Scene.from_arrays(FLOOR, SQUARE), light_above(), camera=turned).valid.any()
+
+
 def test_inputs_are_copied_and_never_changed():
     vertices, faces = FLOOR.copy(), SQUARE.copy()
     points = np.array([[0.0, 0.5, 0], [3, 0.5, 0]])

@@ -2,17 +2,16 @@
 
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::time::Instant;
 
 use softshadow_engine::{AdapterChoice, WgpuEngine};
 use softshadow_native::{NativeEngine, NativeSettings};
 use softshadow_plan::{AdapterInfo, DeviceKind, Engine};
 use softshadow_scene::{Light, Receivers, Scene};
-use softshadow_techniques::{OccluderContents, SceneContents, Technique};
+use softshadow_techniques::Technique;
 
+use crate::choose::calibration::{Calibration, Factors};
 use crate::error::Error;
-use crate::info::Preparation;
-use crate::scene_cache::SceneCache;
+use crate::scene_cache::{Prepared, SceneCache};
 
 /// Which device computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -133,15 +132,14 @@ pub(crate) struct Device {
     scenes: Mutex<SceneCache>,
     /// Whether it does what the main device does not.
     is_stand_in: bool,
+    /// What kernels take, with words about where that comes from; made when a choice first needs it.
+    calibration: Mutex<Option<(Arc<Calibration>, String)>>,
+    /// How much more or less some scenes take, by scene and technique; the latest stand last.
+    factors: Mutex<Vec<(u64, &'static str, Factors)>>,
 }
 
-/// A scene and what hides each light of a call, as the device reads them.
-pub(crate) struct Prepared {
-    pub(crate) contents: Arc<SceneContents>,
-    /// One a light, where the technique wants them.
-    pub(crate) occluders: Vec<Arc<OccluderContents>>,
-    pub(crate) preparation: Preparation,
-}
+/// Scenes and techniques whose costs are remembered.
+const KEPT_FACTORS: usize = 32;
 
 impl Device {
     fn open(opening: Opening) -> Result<Self, Error> {
@@ -150,7 +148,15 @@ impl Device {
         if adapter.device_type == DeviceKind::Software {
             log::warn!("'{}' is a software adapter: everything runs on the CPU", adapter.name);
         }
-        Ok(Self { opening, adapter, engine: Mutex::new(engine), scenes: Mutex::default(), is_stand_in: false })
+        Ok(Self {
+            opening,
+            adapter,
+            engine: Mutex::new(engine),
+            scenes: Mutex::default(),
+            is_stand_in: false,
+            calibration: Mutex::default(),
+            factors: Mutex::default(),
+        })
     }
 
     /// What the device is.
@@ -173,28 +179,41 @@ impl Device {
         Ok(Arc::clone(&kept))
     }
 
+    /// What kernels take on this device, and where that comes from.
+    pub(crate) fn calibration(&self) -> Result<(Arc<Calibration>, String), Error> {
+        let mut kept = lock(&self.calibration);
+        if let Some(known) = &*kept {
+            return Ok(known.clone());
+        }
+        let (made, words) = Calibration::load_or_make(self)?;
+        Ok(kept.insert((Arc::new(made), words)).clone())
+    }
+
+    /// How much more or less than calibrated a technique took on a scene; nothing where it has not run there.
+    pub(crate) fn factors(&self, scene: &Scene, technique: &str) -> Factors {
+        let kept = lock(&self.factors);
+        let found = kept.iter().find(|(topology, name, _)| *topology == scene.topology() && *name == technique);
+        found.map_or_else(Factors::new, |(_, _, factors)| factors.clone())
+    }
+
+    pub(crate) fn learn(&self, scene: &Scene, technique: &'static str, factors: Factors) {
+        let mut kept = lock(&self.factors);
+        kept.retain(|(topology, name, _)| *topology != scene.topology() || *name != technique);
+        kept.push((scene.topology(), technique, factors));
+        let surplus = kept.len().saturating_sub(KEPT_FACTORS);
+        kept.drain(..surplus);
+    }
+
     /// The scene as the device reads it, and with `lights` what hides each: from the cache where it was used lately, from an earlier
     /// frame of a scene that moves, or made anew.
     pub(crate) fn prepare(&self, scene: &Scene, receivers: &Receivers, lights: &[Light]) -> Result<Prepared, Error> {
-        // Without a vertex the frame is that of the points.
-        let bounds = match receivers {
-            Receivers::Points(points) => points_bounds(points.positions()),
-            Receivers::Camera(_) => None,
-        };
         let engine = self.engine()?;
-        let mut cache = lock(&self.scenes);
-        let started = Instant::now();
-        let mut preparation = Preparation::default();
-        let contents = cache.contents(scene, bounds, engine.host().limits.storage_binding_bytes, &mut preparation);
-        let occluders = cache.occluders(scene, &contents, lights, &mut preparation);
-        let superseded = cache.superseded();
-        drop(cache);
-        preparation.preparation_ms = started.elapsed().as_secs_f64() * 1e3;
+        let (prepared, superseded) = lock(&self.scenes).prepare(scene, receivers, lights, &engine.host());
         // It would wait for another thread's run.
         if !superseded.is_empty() {
             engine.forget(&superseded);
         }
-        Ok(Prepared { contents, occluders: occluders?, preparation })
+        prepared
     }
 }
 
@@ -203,13 +222,6 @@ fn engine(opening: Opening) -> Result<Arc<dyn Engine>, Error> {
         Opening::Adapter(choice) => Arc::new(WgpuEngine::new(choice)?),
         Opening::Native => Arc::new(NativeEngine::new(NativeSettings::default())),
     })
-}
-
-fn points_bounds(points: &[[f64; 3]]) -> Option<([f64; 3], [f64; 3])> {
-    let first = *points.first()?;
-    Some(points.iter().fold((first, first), |(low, high), p| {
-        ([0, 1, 2].map(|k| p[k].min(low[k])), [0, 1, 2].map(|k| p[k].max(high[k])))
-    }))
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -5,6 +5,8 @@ use softshadow_plan::PlanError;
 use softshadow_scene::SceneError;
 use softshadow_techniques::TechniqueError;
 
+use crate::choose::BoundNotMet;
+
 /// Why a call gave no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -43,6 +45,9 @@ pub enum Error {
     /// Results that cannot be compared.
     #[error("{0}")]
     Measure(String),
+    /// No setting of any technique keeps what was asked for; the best result comes with it.
+    #[error("{}", .0.reason)]
+    BoundNotMet(Box<BoundNotMet>),
 }
 
 impl From<TechniqueError> for Error {

@@ -30,6 +30,20 @@ pub fn png_srgb8_bytes(bytes: &[u8], size: [u32; 2]) -> Result<Vec<u8>, Error> {
     encode(bytes, size, png::ColorType::Rgb, png::BitDepth::Eight)
 }
 
+/// A palette of sRGB colours, and the place of each pixel's colour in it.
+///
+/// # Errors
+/// [`Error::File`] when the places do not fill the image, for one beyond the palette, and for a palette of none or more than 256.
+pub fn png_palette8_bytes(places: &[u8], palette: &[[u8; 3]], size: [u32; 2]) -> Result<Vec<u8>, Error> {
+    let [width, height] = size;
+    if !(1..=256).contains(&palette.len()) || places.iter().any(|place| usize::from(*place) >= palette.len()) {
+        let colors = palette.len();
+        let reason = format!("a palette of {colors} colours; every pixel needs one of 1 to 256");
+        return Err(Error::File(format!("PNG of {width} × {height}: {reason}")));
+    }
+    encode_with(places, size, png::ColorType::Indexed, png::BitDepth::Eight, palette.as_flattened())
+}
+
 /// Writes [`png_grey16_bytes`] to a file.
 ///
 /// # Errors
@@ -83,18 +97,28 @@ pub fn exr_bytes(channels: Vec<Channel>, [width, height]: [u32; 2], info: &str) 
     Ok(file.into_inner())
 }
 
-fn encode(
+fn encode(bytes: &[u8], size: [u32; 2], color: png::ColorType, depth: png::BitDepth) -> Result<Vec<u8>, Error> {
+    encode_with(bytes, size, color, depth, &[])
+}
+
+fn encode_with(
     bytes: &[u8],
     [width, height]: [u32; 2],
     color: png::ColorType,
     depth: png::BitDepth,
+    palette: &[u8],
 ) -> Result<Vec<u8>, Error> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(color);
     encoder.set_depth(depth);
+    if color == png::ColorType::Indexed {
+        encoder.set_palette(palette);
+    }
     match color {
-        png::ColorType::Rgb => encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric),
+        png::ColorType::Rgb | png::ColorType::Indexed => {
+            encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+        }
         // Gamma 1: viewers and readers know that grey is linear.
         _ => encoder.set_source_gamma(png::ScaledFloat::new(1.0)),
     }
@@ -125,6 +149,23 @@ mod tests {
         let read: Vec<u16> = pixels.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect();
         assert_eq!(read, [0, 16_384, 65_535, 0, 32_768, 65_535]);
         assert!(png_grey16_bytes(&values, [3, 3]).is_err());
+    }
+
+    #[test]
+    fn a_palette_gives_every_pixel_its_colour() {
+        let palette = [[1, 2, 3], [200, 0, 90]];
+        let bytes = png_palette8_bytes(&[0, 1, 1, 0, 0, 1], &palette, [3, 2]).unwrap();
+        let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        assert_eq!(pixels.as_chunks::<3>().0, [0, 1, 1, 0, 0, 1].map(|place: usize| palette[place]));
+        for (places, colors, size) in
+            [(&[0, 2][..], 2, [2, 1]), (&[0], 2, [2, 1]), (&[], 0, [1, 1]), (&[0], 257, [1, 1])]
+        {
+            assert!(png_palette8_bytes(places, &vec![[0; 3]; colors], size).is_err(), "{places:?} of {colors}");
+        }
     }
 
     #[test]

@@ -2,9 +2,11 @@
 
 use serde::Serialize;
 use softshadow_plan::{AdapterInfo, PassTime, RunReport};
-use softshadow_scene::{LocalScene, Scene};
+use softshadow_scene::{Light, LightShape, LocalScene, Scene};
 use softshadow_techniques::Technique;
 use softshadow_techniques::depth_complexity::Evaluation;
+
+use crate::choose::Choice;
 
 /// Adapter, technique, cost, and how well the values are known.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -17,8 +19,8 @@ pub struct Info {
     pub lights: usize,
     /// Receivers asked for.
     pub receivers: usize,
-    /// Receivers that see anything at all.
-    pub valid_receivers: usize,
+    /// Receivers that see anything at all; unknown where results stay on the device.
+    pub valid_receivers: Option<usize>,
     /// Receivers for which rays were traced, added up over lights, passes and sub-scenes; the others have nothing between them
     /// and the light.
     pub traced_receivers: u64,
@@ -63,10 +65,14 @@ pub struct Info {
     pub invisible_triangles: usize,
     /// What the scene's file holds that is not modelled, what the technique does not, and settings that the call could not follow.
     pub notes: Vec<String>,
-    /// `statistical`: values have a standard error. `none`: nothing is known about their error.
+    /// `statistical`: values have a standard error, or a bound holds with a confidence. `none`: nothing is known about their error. Of results
+    /// that were chosen for their error also `certified` and `measured`.
     pub error_kind: &'static str,
     /// Root mean square of the standard error over the penumbra, where there is one.
     pub standard_error: Option<f64>,
+    /// How the technique was chosen and how wrong the result is, where an error or a time was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub choice: Option<Box<Choice>>,
     /// The passes, why each is there, and what each resource weighs.
     pub plan: String,
 }
@@ -97,17 +103,44 @@ impl Info {
     }
 }
 
-/// What a result does not model of its scene, and settings that a call cannot follow where it answers all the same, in words.
-pub(crate) fn notes(scene: &Scene, technique: &Technique, local: &LocalScene) -> Vec<String> {
+/// What a result does not model of its scene and lights, and settings that a call cannot follow where it answers all the same, in words.
+pub(crate) fn notes(scene: &Scene, lights: &[Light], technique: &Technique, local: &LocalScene) -> Vec<String> {
     let semi_opaque = local.opacities.iter().filter(|opacity| **opacity < 1.0).count();
-    let knows_opaque_alone = matches!(technique, Technique::HardShadowMap(_) | Technique::OcclusionCamera(_));
-    let taken = (semi_opaque > 0 && knows_opaque_alone)
-        .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: {} knows no others", technique.name()));
+    let maps = matches!(
+        technique,
+        Technique::HardShadowMap(_) | Technique::PenumbraMap(_) | Technique::OcclusionCamera(_)
+    );
+    let name = technique.name();
+    let taken = (semi_opaque > 0 && maps)
+        .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: {name} knows no others"));
     let by_samples = match technique {
         Technique::DepthComplexity(settings) if settings.exact_area && settings.evaluation == Evaluation::Blended => {
             Some("exact_area: evaluation 'blended' answers by samples alone".into())
         }
         _ => None,
     };
-    scene.notes().iter().cloned().chain(taken).chain(by_samples).collect()
+    let outlines = if matches!(technique, Technique::PenumbraMap(_)) { outline_notes(lights) } else { Vec::new() };
+    scene.notes().iter().cloned().chain(taken).chain(by_samples).chain(outlines).collect()
+}
+
+/// What `penumbra_map` leaves out of lights.
+fn outline_notes(lights: &[Light]) -> Vec<String> {
+    let textured = lights.iter().filter(|light| light.texture().is_some()).count();
+    let concave = lights.iter().filter(|light| is_concave(light.shape())).count();
+    let textures =
+        (textured > 0).then(|| format!("textures of {textured} lights left out: penumbra_map knows outlines"));
+    let hulls = (concave > 0).then(|| format!("{concave} concave polygons taken for their hulls by penumbra_map"));
+    textures.into_iter().chain(hulls).collect()
+}
+
+/// Whether an outline turns both ways.
+fn is_concave(shape: &LightShape) -> bool {
+    let LightShape::Polygon { outline } = shape else { return false };
+    let corner = |i: usize| outline[i % outline.len()];
+    let turn = |i: usize| {
+        let ([ax, ay], [bx, by], [cx, cy]) = (corner(i), corner(i + 1), corner(i + 2));
+        (bx - ax) * (cy - by) - (by - ay) * (cx - bx)
+    };
+    let turns = || (0..outline.len()).map(turn);
+    turns().any(|t| t > 0.0) && turns().any(|t| t < 0.0)
 }

@@ -16,9 +16,12 @@
 //! # Ok::<(), softshadow::Error>(())
 //! ```
 
+pub mod choose;
 mod compare;
 mod context;
+pub mod drawing;
 mod error;
+mod foreign;
 pub mod image_file;
 mod info;
 mod light_points;
@@ -26,13 +29,16 @@ mod render;
 mod scene_cache;
 mod visibility;
 
-pub use compare::{Comparison, ComparisonRow, compare};
+pub use choose::{BoundNotMet, Candidate, Choice, ErrorKind, Goal, Limit, visibility_within};
+pub use compare::{ComparedLight, Comparison, ComparisonRow, compare};
 pub use context::{Context, DeviceChoice, adapters};
 pub use error::Error;
+pub use foreign::{ForeignCall, ForeignDevice};
 pub use info::{Info, Preparation};
 pub use light_points::{LightPoints, light_points};
 pub use render::{Picture, PictureOptions, render};
 pub use softshadow_measure as measure;
+pub use softshadow_plan as plan;
 pub use softshadow_plan::{AdapterInfo, DeviceKind, PassTime, Timing};
 pub use softshadow_scene::{
     Camera, Dropped, Light, LightSampling, LightShape, LightTexture, Material, Mesh, Points, Receivers, STRETCH_LIMIT,
@@ -41,8 +47,9 @@ pub use softshadow_scene::{
 pub use softshadow_techniques::depth_complexity::{
     Counters, Coverage, Evaluation, InitialCounts, OccluderUnit, Silhouettes,
 };
+pub use softshadow_techniques::penumbra_map::Ramp;
 pub use softshadow_techniques::{
-    Attenuation, DepthComplexity, HardShadowMap, OcclusionCamera, Ramp, RayTraced, Shading, Technique, TechniqueError,
+    Attenuation, CameraRamp, DepthComplexity, HardShadowMap, OcclusionCamera, PenumbraMap, RayTraced, Shading, Technique, TechniqueError,
 };
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};
 

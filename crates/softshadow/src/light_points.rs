@@ -37,6 +37,7 @@ pub fn light_points(
         return Err(Error::Settings("light_points spread: interleaved samples are those of an image's pixels".into()));
     }
     let frame = LocalFrame::around(occluder_bounds(scene));
+    light.check_local(&frame)?;
     let samples = LightSamples::new(light, &frame, sampling)?;
     let at_infinity = matches!(light.shape(), LightShape::Sun { .. });
     let turns = matches!(light.shape(), LightShape::Sphere { .. });

@@ -1,11 +1,12 @@
 //! Scenes of the last calls as the device reads them, and what hides each light. A scene that moves takes one place: its last frame.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
+use std::time::Instant;
 
-use softshadow_plan::ContentKey;
+use softshadow_plan::{Content, ContentKey, Host};
 use softshadow_scene::occluders::BoundaryEffect;
-use softshadow_scene::{Light, LocalScene, Scene};
+use softshadow_scene::{Light, LocalScene, Receivers, Scene};
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{OccluderContents, SceneContents};
 
@@ -39,9 +40,48 @@ struct KeptOccluders {
     contents: Arc<OccluderContents>,
 }
 
+/// A scene and what hides each light of a call, as the device reads them.
+pub(crate) struct Prepared {
+    pub(crate) contents: Arc<SceneContents>,
+    /// One a light, where the technique wants them.
+    pub(crate) occluders: Vec<Arc<OccluderContents>>,
+    pub(crate) preparation: Preparation,
+}
+
+impl Prepared {
+    /// Everything that plans may upload.
+    pub(crate) fn uploads(&self) -> BTreeMap<ContentKey, Content> {
+        let everything = self.contents.contents().chain(self.occluders.iter().flat_map(|o| o.contents()));
+        everything.map(|c| (c.key, c.clone())).collect()
+    }
+}
+
 impl SceneCache {
+    /// The scene as a host reads it, and with `lights` what hides each: from the cache where it was used lately, from an earlier
+    /// frame of a scene that moves, or made anew. With it, and with a failure, come the keys of contents that are replaced.
+    pub(crate) fn prepare(
+        &mut self,
+        scene: &Scene,
+        receivers: &Receivers,
+        lights: &[Light],
+        host: &Host,
+    ) -> (Result<Prepared, Error>, Vec<ContentKey>) {
+        // Without a vertex the frame is that of the points.
+        let bounds = match receivers {
+            Receivers::Points(points) => points_bounds(points.positions()),
+            Receivers::Camera(_) => None,
+        };
+        let started = Instant::now();
+        let mut preparation = Preparation::default();
+        let contents = self.contents(scene, bounds, host.limits.storage_binding_bytes, &mut preparation);
+        let occluders = self.occluders(scene, &contents, lights, &mut preparation);
+        let superseded = self.superseded();
+        preparation.preparation_ms = started.elapsed().as_secs_f64() * 1e3;
+        (occluders.map(|occluders| Prepared { contents, occluders, preparation }), superseded)
+    }
+
     /// The scene; `bounds` are those of the points where it has no vertex at all.
-    pub(crate) fn contents(
+    fn contents(
         &mut self,
         scene: &Scene,
         bounds: Option<([f64; 3], [f64; 3])>,
@@ -75,7 +115,7 @@ impl SceneCache {
     }
 
     /// What hides each light.
-    pub(crate) fn occluders(
+    fn occluders(
         &mut self,
         scene: &Scene,
         contents: &Arc<SceneContents>,
@@ -143,7 +183,7 @@ impl SceneCache {
     }
 
     /// Keys of contents that were replaced since the last call, without those that are still kept.
-    pub(crate) fn superseded(&mut self) -> Vec<ContentKey> {
+    fn superseded(&mut self) -> Vec<ContentKey> {
         let mut keys = std::mem::take(&mut self.superseded);
         let kept = self.scenes.iter().flat_map(|kept| kept.contents.contents());
         let kept = kept.chain(self.occluders.iter().flat_map(|kept| kept.contents.contents()));
@@ -151,6 +191,13 @@ impl SceneCache {
         keys.retain(|key| !kept.contains(key));
         keys
     }
+}
+
+fn points_bounds(points: &[[f64; 3]]) -> Option<([f64; 3], [f64; 3])> {
+    let first = *points.first()?;
+    Some(points.iter().fold((first, first), |(low, high), p| {
+        ([0, 1, 2].map(|k| p[k].min(low[k])), [0, 1, 2].map(|k| p[k].max(high[k])))
+    }))
 }
 
 #[cfg(test)]

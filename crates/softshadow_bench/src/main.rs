@@ -8,6 +8,8 @@
 //!
 //! Errors of a case with a picture are those of its visibility. Half opaque scenes have references of their own.
 //!
+//! A sweep moves the light, the receivers or an object, and tells by how much the error changes from a frame to the next.
+//!
 //! A waving scene moves from frame to frame: `refit ms` is what the library takes to come from the last frame to this one, `build
 //! ms` what the same vertices cost as a new scene, in turns; `ms` is the shadows of the frame that was refitted. Both must give the same
 //! values.
@@ -15,12 +17,15 @@
 mod case;
 mod error;
 mod measure;
+mod progress;
 mod ratios;
 mod reference;
 mod report;
+mod resume;
 mod scenes;
 mod session;
 mod statistics;
+mod sweep;
 mod table;
 mod waving;
 
@@ -39,7 +44,7 @@ use crate::session::Session;
 #[derive(Debug, Parser)]
 #[command(name = "softshadow-bench", version, after_help = after_help())]
 pub(crate) struct Arguments {
-    /// A scene's name, or a mesh such as cow.obj; may be given several times
+    /// A scene's name, a mesh such as cow.obj, any scene.json with a light and a camera, or a folder of meshes; may be given several times
     #[arg(long = "scene", value_name = "NAME", default_values = ["fork", "bunny"])]
     pub(crate) scenes: Vec<String>,
     /// A technique with settings, such as depth-complexity:samples=64,exact_area=true; +integrated or
@@ -52,15 +57,26 @@ pub(crate) struct Arguments {
     /// Lets every scene sway for so many frames, too: milliseconds of refits, of scenes made anew, and of shadows
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) waving: Option<u32>,
+    /// Sweeps light, receivers and an object over so many frames, too: flicker and the largest jump of every technique
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(2..))]
+    pub(crate) sweep: Option<u32>,
     /// Pixels: a number for a square, or WIDTHxHEIGHT; may be given several times
-    #[arg(long = "size", value_name = "PIXELS", value_parser = parse_size, default_values = ["512"])]
+    #[arg(long = "size", value_name = "PIXELS", value_parser = parse_size, default_value_ifs([("quick", "true", "128")]),
+        default_values = ["512"])]
     pub(crate) sizes: Vec<[u32; 2]>,
+    /// Under two minutes: small images, three turns, and a reference of fewer rays; what is given beside it counts
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Leaves out what the file of --json has of this device and these settings already, and adds to it
+    #[arg(long, requires = "json")]
+    pub(crate) resume: bool,
     /// Turns after the warm-up
-    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 7, default_value_if("quick", "true", "3"), value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) repeats: u32,
     /// What errors are measured against
     #[arg(long, value_name = "TECHNIQUE", value_parser = parse_technique,
-        default_value = "ray_traced:samples=256,passes=16,pattern=low_discrepancy,seed=99")]
+        default_value = "ray_traced:samples=256,passes=16,pattern=low_discrepancy,seed=99",
+        default_value_if("quick", "true", "ray_traced:samples=256,passes=4,pattern=low_discrepancy,seed=99"))]
     pub(crate) reference: Technique,
     /// A folder in which references are kept and found again; delete it after a change to the reference's own code
     #[arg(long, value_name = "FOLDER")]
@@ -117,6 +133,9 @@ mod tests {
         let defaults = Arguments::try_parse_from(["softshadow-bench"]).unwrap();
         assert_eq!((defaults.sizes, defaults.repeats), (vec![[512, 512]], 7));
         assert_eq!(defaults.reference.samples() * defaults.reference.passes(), 4096);
+        let quick = Arguments::try_parse_from(["softshadow-bench", "--quick", "--repeats", "2"]).unwrap();
+        assert_eq!((quick.sizes, quick.repeats, quick.reference.passes()), (vec![[128, 128]], 2, 4));
+        assert!(Arguments::try_parse_from(["softshadow-bench", "--resume"]).is_err(), "there is nothing to resume");
     }
 
     #[test]

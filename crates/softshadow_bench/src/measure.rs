@@ -88,13 +88,22 @@ pub(crate) fn take_turns(
     subjects: &Subjects,
     cases: &[Case],
     repeats: u32,
+    on_run: &dyn Fn(usize, usize),
 ) -> (Vec<Measurement>, Vec<Failure>) {
     let mut failures = Vec::new();
     let mut entered: Vec<(Case, Vec<Run>)> = cases.iter().map(|case| (case.clone(), Vec::new())).collect();
     // Turn 0 warms up: pipelines, uploads and buffers are made there. Who fails leaves.
-    for _ in 0..=repeats {
+    let total = (repeats as usize + 1) * cases.len();
+    let mut done = 0;
+    for turn in 0..=repeats {
+        // Every other turn goes backwards: nobody always runs after the same one.
+        if turn > 0 {
+            entered.reverse();
+        }
         entered.retain_mut(|(case, runs)| match run(context, &subjects.of(case).measured, case, Timing::Device) {
             Ok(run) => {
+                done += 1;
+                on_run(done, total);
                 // Values are kept of the last run alone.
                 runs.iter_mut().for_each(|earlier: &mut Run| earlier.seen.values = Vec::new());
                 runs.push(run);
@@ -106,6 +115,8 @@ pub(crate) fn take_turns(
             }
         });
     }
+    // As they were given.
+    entered.sort_by_key(|(case, _)| cases.iter().position(|given| given.is(case)));
     let mut measurements = Vec::new();
     for (case, runs) in entered {
         match conclude(context, subjects.of(&case), case.clone(), runs) {

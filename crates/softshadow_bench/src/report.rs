@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use softshadow::measure::{ErrorReport, RegionError};
-use softshadow::{AdapterInfo, PassTime, Shading, Technique};
+use softshadow::{AdapterInfo, DeviceKind, PassTime, Shading, Technique};
 
 use crate::measure::Measurement;
 use crate::statistics::{median, range};
@@ -26,6 +26,15 @@ impl Environment {
             system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             threads: std::thread::available_parallelism().map_or(1, usize::from),
         }
+    }
+
+    /// What makes these numbers worth less.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let software = (self.adapter.device_type == DeviceKind::Software).then(|| {
+            format!("'{}' is a software driver: its times say nothing about a graphics card", self.adapter.name)
+        });
+        let build = cfg!(debug_assertions).then(|| "this is a debug build".to_owned());
+        software.into_iter().chain(build).collect()
     }
 
     pub(crate) fn line(&self) -> String {
@@ -62,7 +71,7 @@ pub(crate) struct Row<'a> {
     reference: &'a Technique,
     reference_standard_error: Option<f64>,
     receivers: usize,
-    valid_receivers: usize,
+    valid_receivers: Option<usize>,
     traced_receivers: u64,
     area_receivers: u64,
     silhouette_edges: u64,
@@ -129,6 +138,19 @@ pub(crate) fn summary(measurements: &[Measurement]) -> Table {
         table.add(row);
     }
     table
+}
+
+/// A slowest turn beyond so many medians is another program's work.
+const NOISE: f64 = 1.5;
+
+/// Which cases had other work beside them.
+pub(crate) fn noise(measurements: &[Measurement]) -> Option<String> {
+    let is_noisy = |m: &&Measurement| range(&m.wall_ms)[1] > NOISE * m.median_ms();
+    let count = measurements.iter().filter(is_noisy).count();
+    (count > 0).then(|| {
+        let of = measurements.len();
+        format!("{count} of {of} cases had a turn of more than {NOISE} times their median: the machine has other work")
+    })
 }
 
 /// Nothing measured never reads as no error.

@@ -59,7 +59,46 @@ pub(crate) fn names() -> Vec<&'static str> {
     procedural::names().into_iter().chain(PLACED.iter().map(|(name, _)| *name)).collect()
 }
 
-/// A scene by name, or a mesh file on its own, in an image of `[width, height]`.
+/// The scenes that were asked for: a folder stands for every mesh in it, in the order of their names.
+pub(crate) fn listed(asked: &[String], meshes: &Path) -> Result<Vec<String>, BenchError> {
+    let mut listed = Vec::new();
+    for name in asked {
+        let folder = [PathBuf::from(name), meshes.join(name)].into_iter().find(|path| path.is_dir());
+        let Some(folder) = folder.filter(|_| !names().contains(&name.as_str())) else {
+            listed.push(name.clone());
+            continue;
+        };
+        let failed = |error: std::io::Error| BenchError::file(folder.display().to_string(), error);
+        let paths = std::fs::read_dir(&folder).map_err(failed)?.map(|entry| entry.map(|entry| entry.path()));
+        let paths = paths.collect::<Result<Vec<PathBuf>, _>>().map_err(failed)?;
+        let is_mesh = |path: &&PathBuf| path.extension().is_some_and(|end| MESHES.iter().any(|known| end == *known));
+        let mut found: Vec<String> =
+            paths.iter().filter(is_mesh).map(|path| path.to_string_lossy().into_owned()).collect();
+        if found.is_empty() {
+            return Err(BenchError::file(
+                folder.display().to_string(),
+                format!("no mesh in it: {}", MESHES.join(", ")),
+            ));
+        }
+        found.sort();
+        listed.extend(found);
+    }
+    Ok(listed)
+}
+
+const MESHES: [&str; 5] = ["glb", "gltf", "obj", "ply", "stl"];
+
+/// A scene file with a light and a camera of its own; the first of each counts.
+fn described(name: &str, path: &Path, size: [u32; 2]) -> Result<Measured, BenchError> {
+    let file = scene_file::load_all(path)?;
+    let lacks = |what: &str| BenchError::file(path.display().to_string(), format!("it has no {what}"));
+    let light = file.lights.into_iter().next().ok_or_else(|| lacks("light"))?.light;
+    let c = file.camera.ok_or_else(|| lacks("camera"))?;
+    let camera = Camera::look_at(c.eye, c.target, c.up, c.fov_y_deg, size)?;
+    Ok(Measured { name: name.into(), scene: file.scene, light, camera })
+}
+
+/// A scene by name, a scene file with its own light and camera, or a mesh file on its own, in an image of `[width, height]`.
 pub(crate) fn find(name: &str, size: [u32; 2], meshes: &Path) -> Result<Measured, BenchError> {
     if procedural::names().contains(&name) {
         return shipped(name, size);
@@ -68,8 +107,13 @@ pub(crate) fn find(name: &str, size: [u32; 2], meshes: &Path) -> Result<Measured
         let placed = models.iter().map(|m| place(&meshes.join(m.file), m.foot, m.turned_deg, m.height));
         return on_ground(name, placed.collect::<Result<_, _>>()?, size);
     }
-    if Path::new(name).extension().is_some() {
-        return on_ground(name, vec![place(&meshes.join(name), [0.0; 2], 0.0, 1.0)?], size);
+    if let Some(extension) = Path::new(name).extension() {
+        let own = PathBuf::from(name);
+        let path = if own.is_file() { own } else { meshes.join(name) };
+        if extension == "json" {
+            return described(name, &path, size);
+        }
+        return on_ground(name, vec![place(&path, [0.0; 2], 0.0, 1.0)?], size);
     }
     Err(BenchError::UnknownScene { name: name.into(), known: names().join(", ") })
 }
@@ -157,6 +201,26 @@ mod tests {
         let expected = [[-0.25, -0.5, -0.125], [0.25, -0.5, -0.125], [0.25, 0.5, -0.125], [-0.25, 0.5, 0.125]];
         assert_eq!((model.name.as_str(), &model.vertices[..]), ("box", &expected[..]));
         assert_eq!(measured.scene.meshes().len(), 2);
+    }
+
+    #[test]
+    fn a_folder_stands_for_its_meshes_and_a_scene_file_brings_light_and_camera() {
+        let folder = folder_with_a_box("listed");
+        std::fs::write(folder.join("notes.txt"), "no mesh").unwrap();
+        let text = r#"{"softshadow": 1, "meshes": [{"path": "box.obj"}],
+            "lights": [{"type": "RectLight", "width": 1, "height": 2, "translate": [0, 20, 0], "target": [0, 0, 0]}],
+            "camera": {"eye": [9, 9, 9], "target": [6, 9, 9], "fov_y_deg": 40, "size": [640, 480]}}"#;
+        std::fs::write(folder.join("room.json"), text).unwrap();
+        let name = folder.to_string_lossy().into_owned();
+        let meshes = Path::new("/nowhere");
+        let found = listed(&["fork".into(), name], meshes).unwrap();
+        assert_eq!(found, ["fork".to_owned(), folder.join("box.obj").to_string_lossy().into_owned()]);
+        assert_eq!(find(&found[1], [8, 8], meshes).unwrap().scene.meshes().len(), 2);
+        let room = find(&folder.join("room.json").to_string_lossy(), [8, 6], meshes).unwrap();
+        assert_eq!((room.scene.meshes().len(), room.camera.size()), (1, [8, 6]));
+        let empty = folder.join("empty");
+        std::fs::create_dir_all(&empty).unwrap();
+        assert!(listed(&[empty.to_string_lossy().into_owned()], meshes).unwrap_err().to_string().contains("no mesh"));
     }
 
     #[test]

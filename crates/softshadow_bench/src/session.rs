@@ -4,16 +4,19 @@ use std::fs::File;
 use std::io::Write;
 
 use serde::Serialize;
-use softshadow::{Context, DeviceKind};
+use softshadow::{Context, DeviceKind, Technique};
 
 use crate::Arguments;
 use crate::case::Case;
 use crate::error::BenchError;
 use crate::measure::{Failure, Subject, Subjects, take_turns};
+use crate::progress::Progress;
 use crate::ratios::{self, MeasuredRatio};
 use crate::reference;
 use crate::report::{self, Environment, Place, Row};
+use crate::resume::{self, Known};
 use crate::scenes::{self, Measured};
+use crate::sweep::{self, Sweep};
 use crate::waving::{self, Waving};
 
 /// Measured where neither cases nor ratios are asked for.
@@ -29,6 +32,9 @@ pub(crate) struct Session<'a> {
     arguments: &'a Arguments,
     out: &'a mut dyn Write,
     json: Option<File>,
+    /// What an earlier run has measured.
+    known: Known,
+    progress: Progress,
     context: Context,
     environment: Environment,
     cases: Vec<Case>,
@@ -58,6 +64,18 @@ struct WavingLine<'a> {
     environment: &'a Environment,
 }
 
+/// A line of JSON about a case while something moves.
+#[derive(Serialize)]
+struct SweepLine<'a> {
+    kind: &'static str,
+    scene: &'a str,
+    size: [u32; 2],
+    #[serde(flatten)]
+    sweep: &'a Sweep,
+    reference: &'a Technique,
+    environment: &'a Environment,
+}
+
 /// A line of JSON about what was not measured.
 #[derive(Serialize)]
 struct AbsentLine<'a> {
@@ -78,15 +96,31 @@ impl<'a> Session<'a> {
         if cases.is_empty() {
             cases = DEFAULT_CASES.iter().map(|text| text.parse()).collect::<Result<_, _>>()?;
         }
-        let json = match &arguments.json {
-            Some(path) => {
-                Some(File::create(path).map_err(|error| BenchError::file(path.display().to_string(), error))?)
-            }
-            None => None,
-        };
         let context = Context::new(&arguments.device)?;
         let environment = Environment::of(context.adapter());
-        let mut session = Self { arguments, out, json, context, environment, cases, skipped: 0, failed: 0 };
+        let (json, known) = match &arguments.json {
+            Some(path) if arguments.resume => {
+                let (file, known) = resume::open(path, &environment)?;
+                (Some(file), known)
+            }
+            Some(path) => {
+                let file = File::create(path).map_err(|error| BenchError::file(path.display().to_string(), error))?;
+                (Some(file), Known::default())
+            }
+            None => (None, Known::default()),
+        };
+        let mut session = Self {
+            arguments,
+            out,
+            json,
+            known,
+            progress: Progress::on_stderr(),
+            context,
+            environment,
+            cases,
+            skipped: 0,
+            failed: 0,
+        };
         session.leave_out_what_draws()?;
         Ok(session)
     }
@@ -108,9 +142,16 @@ impl<'a> Session<'a> {
     pub(crate) fn run(mut self) -> Result<usize, BenchError> {
         let line = self.environment.line();
         self.say(&line)?;
+        for warning in self.environment.warnings() {
+            self.say(&format!("warning: {warning}"))?;
+        }
         let meshes = scenes::meshes_folder();
-        for name in &self.arguments.scenes {
+        for name in &scenes::listed(&self.arguments.scenes, &meshes)? {
             for &size in &self.arguments.sizes {
+                if self.known.has(name, size, self.arguments, &self.cases) {
+                    self.say(&format!("\n{name}, {} × {}: measured before", size[0], size[1]))?;
+                    continue;
+                }
                 match scenes::find(name, size, &meshes) {
                     Ok(measured) => self.measure(&measured)?,
                     Err(missing @ BenchError::MissingMesh { .. }) => {
@@ -147,7 +188,11 @@ impl<'a> Session<'a> {
         let standard_error = standard_error.map_or("unknown".into(), |e| format!("{e:.5}"));
         let samples = u64::from(technique.samples()) * u64::from(technique.passes());
         self.say(&format!("reference: {} with {samples} samples, standard error {standard_error}", technique.name()))?;
-        let (measurements, failures) = take_turns(&self.context, &subjects, &self.cases, self.arguments.repeats);
+        let (measurements, failures) =
+            take_turns(&self.context, &subjects, &self.cases, self.arguments.repeats, &|done, total| {
+                self.progress.say(name, done, total);
+            });
+        self.progress.clear();
         let environment = self.environment.clone();
         let place = Place {
             scene: &measured.name,
@@ -161,6 +206,9 @@ impl<'a> Session<'a> {
             self.record(&Row::of(Place { reference_standard_error, ..place }, measurement))?;
         }
         self.say(&format!("\n{}", report::summary(&measurements)))?;
+        if let Some(warning) = report::noise(&measurements) {
+            self.say(&format!("warning: {warning}"))?;
+        }
         if let Some(chosen) = self.arguments.ratios {
             self.say_ratios(place, &ratios::of(&measurements, chosen)?)?;
         }
@@ -179,6 +227,24 @@ impl<'a> Session<'a> {
                 })?;
             }
             self.say(&waving::table(&waving).to_string())?;
+            failures.extend(failed);
+        }
+        if let Some(frames) = self.arguments.sweep {
+            let all = self.cases.iter().filter(|case| !case.semi_opaque);
+            let all = all.filter(|case| !failures.iter().any(|failure| failure.case.is(case)));
+            let (sweeps, failed) = sweep::measure(&self.context, measured, all, technique, frames)?;
+            for row in &sweeps {
+                let (size, environment) = (place.size, &environment);
+                self.record(&SweepLine {
+                    kind: "sweep",
+                    scene: name,
+                    size,
+                    sweep: row,
+                    reference: technique,
+                    environment,
+                })?;
+            }
+            self.say(&sweep::table(&sweeps).to_string())?;
             failures.extend(failed);
         }
         for Failure { case, error } in &failures {

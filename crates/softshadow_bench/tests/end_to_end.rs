@@ -107,6 +107,61 @@ fn a_run_measures_says_and_records() {
 }
 
 #[test]
+fn sweeps_tell_what_jumps_from_what_slides() {
+    let json = scratch("sweeps.json");
+    let mut arguments = vec!["--scene", "fork", "--size", "48x32", "--repeats", "1", "--sweep", "3"];
+    arguments.extend(["--technique", "ray_traced:samples=1", "--technique", "depth_complexity:samples=64"]);
+    arguments.extend(["--technique", "depth_complexity:samples=16,spread=interleaved"]);
+    arguments.extend(["--reference", "ray_traced:samples=64,passes=4,pattern=low_discrepancy"]);
+    arguments.extend(["--device", "native", "--json", json.to_str().unwrap()]);
+    let output = bench(&arguments);
+    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
+    let lines = std::fs::read_to_string(&json).unwrap();
+    let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let sweeps: Vec<&Value> = lines.iter().filter(|line| line["kind"] == "sweep").collect();
+    // Points have no neighbours to be averaged with.
+    assert_eq!(sweeps.len(), 3 * 3 - 1, "{lines:?}");
+    for moving in ["light", "receivers", "object"] {
+        let of_case = |name: &str| {
+            let row = sweeps.iter().find(|row| row["moving"] == moving && row["technique"]["name"] == name);
+            let steady = row.unwrap()["steadiness"].clone();
+            ["flicker", "largest_jump", "reference_flicker"].map(|key| steady[key].as_f64().unwrap())
+        };
+        // One sample is a hard edge, and jumps where it moves.
+        let ([hard, pops, own], [soft, slides, _]) = (of_case("ray_traced"), of_case("depth_complexity"));
+        assert!(
+            soft < 0.6 * hard && slides < pops && own < 0.1 * hard,
+            "{moving}: {soft} {slides} {hard} {pops} {own}"
+        );
+    }
+}
+
+#[test]
+fn an_ended_run_goes_on_where_it_stopped() {
+    let json = scratch("resumed.json");
+    let run = |scenes: &[&str]| {
+        let mut arguments = vec!["--quick", "--resume", "--size", "24", "--repeats", "1", "--device", "native"];
+        arguments.extend(scenes.iter().flat_map(|scene| ["--scene", scene]));
+        arguments.extend(["--technique", "ray_traced:samples=16", "--json", json.to_str().unwrap()]);
+        let output = bench(&arguments);
+        assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
+        let lines = std::fs::read_to_string(&json).unwrap();
+        (text(&output.stdout), lines.lines().filter(|line| line.contains("\"measurement\"")).count())
+    };
+    let (first, lines) = run(&["fork"]);
+    assert!(!first.contains("measured before") && lines == 1, "{first}");
+    // The end of a line that was never finished.
+    let half = std::fs::read_to_string(&json).unwrap() + "{\"kind\": \"measu";
+    std::fs::write(&json, half).unwrap();
+    let (second, lines) = run(&["fork", "toruses"]);
+    assert!(second.contains("fork, 24 × 24: measured before") && lines == 2, "{second}");
+    // Other lines are no benchmark's.
+    std::fs::write(&json, "nonsense\n").unwrap();
+    let output = bench(&["--resume", "--scene", "fork", "--size", "8", "--json", json.to_str().unwrap()]);
+    assert!(text(&output.stderr).contains("line 1"), "{}", text(&output.stderr));
+}
+
+#[test]
 fn what_a_scene_refuses_is_a_named_failure_among_the_others() {
     let output = bench(&[
         "--scene",
@@ -136,6 +191,8 @@ fn nonsense_is_refused_with_the_way_out() {
         (&["--size", "0"], "WIDTHxHEIGHT"),
         (&["--repeats", "0"], "0 is not in 1.."),
         (&["--waving", "0"], "0 is not in 1.."),
+        (&["--sweep", "1"], "1 is not in 2.."),
+        (&["--resume"], "--json"),
         (&["--ratios", "some"], "[possible values: all, published]"),
         (&["--scene", "fork", "--size", "8", "--reference", "hard_shadow_map"], "has no standard error"),
         (&["--device", "quantum"], "none of 'auto', 'gpu', 'native', 'software'"),

@@ -35,7 +35,8 @@ pub(crate) struct Opened {
 #[must_use]
 pub fn adapters() -> Vec<AdapterInfo> {
     let found = enumerate(ALL);
-    found.iter().enumerate().map(|(index, adapter)| describe(index, adapter)).collect()
+    let describe = |(index, a): (usize, &wgpu::Adapter)| describe(index, &a.get_info(), &a.limits(), a.features());
+    found.iter().enumerate().map(describe).collect()
 }
 
 const ALL: wgpu::Backends = wgpu::Backends::PRIMARY.union(wgpu::Backends::GL);
@@ -81,7 +82,7 @@ pub(crate) fn open(choice: AdapterChoice) -> Result<Opened, EngineError> {
     };
     let Some(index) = index else { return Err(EngineError::NoAdapter { wanted }) };
     let adapter = &found[index];
-    let info = describe(index, adapter);
+    let info = describe(index, &adapter.get_info(), &adapter.limits(), adapter.features());
     let descriptor = wgpu::DeviceDescriptor {
         label: Some("softshadow"),
         required_features: adapter.features() & optional_features(),
@@ -109,12 +110,27 @@ pub(crate) fn open(choice: AdapterChoice) -> Result<Opened, EngineError> {
     Ok(Opened { device, queue, info, host, lost, uncaught })
 }
 
+/// A device that somebody else owns. Its callbacks are its owner's, so only what it answers says whether it is lost.
+pub(crate) fn borrowed(device: &wgpu::Device, queue: &wgpu::Queue) -> Opened {
+    Opened {
+        info: describe(0, &device.adapter_info(), &device.limits(), device.features()),
+        host: host(device),
+        device: device.clone(),
+        queue: queue.clone(),
+        lost: Arc::default(),
+        uncaught: Arc::default(),
+    }
+}
+
 fn optional_features() -> wgpu::Features {
     wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::FLOAT32_BLENDABLE
 }
 
 fn host(device: &wgpu::Device) -> Host {
     let (limits, features) = (device.limits(), device.features());
+    let float32_blendable = features.contains(wgpu::Features::FLOAT32_BLENDABLE);
+    // Core WebGPU promises it; wgpu's GL refuses such targets.
+    let float32_drawable = device.adapter_info().backend != wgpu::Backend::Gl;
     Host {
         limits: Limits {
             storage_binding_bytes: limits.max_storage_buffer_binding_size,
@@ -126,7 +142,7 @@ fn host(device: &wgpu::Device) -> Host {
             color_targets: limits.max_color_attachments,
             color_bytes: limits.max_color_attachment_bytes_per_sample,
         },
-        features: Features { raster: true, float32_blendable: features.contains(wgpu::Features::FLOAT32_BLENDABLE) },
+        features: Features { raster: true, float32_blendable, float32_drawable },
     }
 }
 
@@ -138,8 +154,7 @@ fn kind(info: &wgpu::AdapterInfo) -> DeviceKind {
     }
 }
 
-fn describe(index: usize, adapter: &wgpu::Adapter) -> AdapterInfo {
-    let (info, limits, features) = (adapter.get_info(), adapter.limits(), adapter.features());
+fn describe(index: usize, info: &wgpu::AdapterInfo, limits: &wgpu::Limits, features: wgpu::Features) -> AdapterInfo {
     let named = [
         ("timestamp-query", wgpu::Features::TIMESTAMP_QUERY),
         ("float32-blendable", wgpu::Features::FLOAT32_BLENDABLE),
@@ -148,7 +163,7 @@ fn describe(index: usize, adapter: &wgpu::Adapter) -> AdapterInfo {
         index,
         name: info.name.clone(),
         backend: info.backend.to_str().to_owned(),
-        device_type: kind(&info),
+        device_type: kind(info),
         driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
         storage_binding_bytes: limits.max_storage_buffer_binding_size,
         texture_size: limits.max_texture_dimension_2d,

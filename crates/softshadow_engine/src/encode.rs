@@ -1,10 +1,13 @@
 //! One pass as commands: pipeline, bindings by name, targets, and how many invocations.
 
-use softshadow_plan::{Count, Over, Pass, Plan, Raster, ResourceId, SLICE, VertexSource, Work};
+use std::collections::BTreeMap;
+
+use softshadow_plan::{
+    Count, Delivery, Dispatch, Over, Pass, Plan, Raster, ResourceId, SLICE, VertexSource, Work, bindings,
+};
 
 use crate::pipelines::Pipelines;
 use crate::pool::Slot;
-use crate::schedule::Dispatch;
 use crate::timing::Timestamps;
 use softshadow_plan::EngineError;
 
@@ -26,19 +29,13 @@ impl Encoding<'_> {
     /// Encodes one dispatch, with its pass around it.
     pub(crate) fn dispatch(
         &mut self,
-        dispatch: &Dispatch<'_>,
+        dispatch: &Dispatch,
         encoder: &mut wgpu::CommandEncoder,
         timestamps: &mut Option<Timestamps>,
     ) -> Result<(), EngineError> {
         let (device, plan, slots, slices) = (self.device, self.plan, self.slots, self.slices);
-        let pass = dispatch.pass;
-        let buffer = |id: ResourceId| match &slots[id.index()] {
-            Slot::Buffer(buffer) => Ok(buffer),
-            Slot::Texture(_) => {
-                let label = &plan.resources[id.index()].label;
-                Err(EngineError::contents(&plan.name, label, "is a texture where a buffer is needed"))
-            }
-        };
+        let pass = &plan.passes[dispatch.pass];
+        let buffer = |id| buffer_of(plan, slots, id);
         match &pass.work {
             Work::Clear { target } => encoder.clear_buffer(buffer(*target)?, 0, None),
             Work::Copy { source, target, bytes } => {
@@ -46,16 +43,13 @@ impl Encoding<'_> {
             }
             Work::Compute { kernel, over } => {
                 let pipeline = self.pipelines.compute(device, *kernel)?;
-                let module = softshadow_shaders::module(kernel.file)
-                    .map_err(|error| softshadow_plan::PlanError::Shader { pass: pass.label.clone(), error })?;
-                let entry = &module.entry_points[kernel.entry];
                 let group = bind_group(
                     device,
                     plan,
                     pass,
                     slots,
                     &pipeline.get_bind_group_layout(0),
-                    &entry.bindings,
+                    &bindings(pass)?,
                     Some((slices, dispatch.slice)),
                 );
                 let timestamp_writes = timestamps.as_mut().map(|t| {
@@ -72,7 +66,7 @@ impl Encoding<'_> {
                 compute.set_bind_group(0, &group, &[]);
                 match over {
                     Over::Items { .. } => {
-                        compute.dispatch_workgroups(dispatch.count.div_ceil(entry.workgroup_size[0]), 1, 1);
+                        compute.dispatch_workgroups(dispatch.groups, 1, 1);
                     }
                     Over::Indirect(counts) => compute.dispatch_workgroups_indirect(buffer(*counts)?, 0),
                 }
@@ -92,7 +86,7 @@ impl Encoding<'_> {
         let (device, plan, slots) = (self.device, self.plan, self.slots);
         let corners = matches!(raster.vertices, VertexSource::Corners { .. });
         let pipeline = self.pipelines.raster(device, plan, raster, corners)?;
-        let bindings = raster_bindings(pass, raster)?;
+        let bindings = bindings(pass)?;
         let group = (!bindings.is_empty())
             .then(|| bind_group(device, plan, pass, slots, &pipeline.get_bind_group_layout(0), &bindings, None));
         let view = |id: ResourceId, layer: u32| match &slots[id.index()] {
@@ -164,19 +158,37 @@ impl Encoding<'_> {
     }
 }
 
-/// The bindings of both entry points of a raster pass, each once.
-fn raster_bindings(pass: &Pass, raster: &Raster) -> Result<Vec<softshadow_shaders::Binding>, EngineError> {
-    let module = softshadow_shaders::module(raster.kernel.file)
-        .map_err(|error| softshadow_plan::PlanError::Shader { pass: pass.label.clone(), error })?;
-    let mut bindings = module.entry_points[raster.kernel.vertex].bindings.clone();
-    for entry in raster.kernel.fragment.iter().map(|name| &module.entry_points[*name]) {
-        for binding in &entry.bindings {
-            if !bindings.iter().any(|known| known.name == binding.name) {
-                bindings.push(binding.clone());
-            }
+/// The buffer of a resource.
+fn buffer_of<'a>(plan: &Plan, slots: &'a [Slot], id: ResourceId) -> Result<&'a wgpu::Buffer, EngineError> {
+    match &slots[id.index()] {
+        Slot::Buffer(buffer) => Ok(buffer),
+        Slot::Texture(_) => {
+            let label = &plan.resources[id.index()].label;
+            Err(EngineError::contents(&plan.name, label, "is a texture where a buffer is needed"))
         }
     }
-    Ok(bindings)
+}
+
+/// Copies a part of an output to the result that it belongs to.
+pub(crate) fn deliver(
+    plan: &Plan,
+    slots: &[Slot],
+    delivery: &Delivery,
+    results: &BTreeMap<&str, wgpu::Buffer>,
+    encoder: &mut wgpu::CommandEncoder,
+) -> Result<(), EngineError> {
+    let source = buffer_of(plan, slots, delivery.output)?;
+    let wrong = |problem: String| EngineError::contents(&plan.name, delivery.result, problem);
+    let target = results.get(delivery.result).ok_or_else(|| wrong("no buffer for this result was given".into()))?;
+    let needed = delivery.target + delivery.bytes;
+    if target.size() < needed {
+        return Err(wrong(format!("its buffer has {} bytes, at least {needed} are needed", target.size())));
+    }
+    if !target.usage().contains(wgpu::BufferUsages::COPY_DST) {
+        return Err(wrong("its buffer has no usage COPY_DST".into()));
+    }
+    encoder.copy_buffer_to_buffer(source, delivery.source, target, delivery.target, delivery.bytes);
+    Ok(())
 }
 
 fn bind_group(

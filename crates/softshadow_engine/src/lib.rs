@@ -8,7 +8,6 @@ mod error;
 mod pipelines;
 mod pool;
 mod run;
-mod schedule;
 mod timing;
 
 pub use adapter::{AdapterChoice, adapters};

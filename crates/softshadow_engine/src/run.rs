@@ -1,20 +1,21 @@
 //! The interpreter: a program's stages, one submission each unless a pass is so long that it is split.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use softshadow_plan::{
-    AdapterInfo, Content, ContentKey, DeviceKind, Engine, EngineError, Host, OnStage, Origin, PassTime, Plan, Program,
-    ResourceId, RunReport, SLICE, Stage, StageReport, Step, Timing, check,
+    AdapterInfo, Content, ContentKey, Delivery, DeviceKind, DeviceProgram, Dispatch, Engine, EngineError, Host,
+    OnStage, Origin, PassTime, Plan, Program, ResourceId, RunReport, SLICE, Stage, StageReport, Step, Timing, check,
+    schedule,
 };
 
-use crate::adapter::{AdapterChoice, Opened, open};
-use crate::encode::{Encoding, SLICE_STRIDE};
+use crate::adapter::{AdapterChoice, Opened, borrowed, open};
+use crate::encode::{Encoding, SLICE_STRIDE, deliver};
 use crate::error::from_wgpu;
 use crate::pipelines::Pipelines;
 use crate::pool::{Pool, Slot};
-use crate::schedule::{Dispatch, schedule};
 use crate::timing::Timestamps;
 
 /// How long one submission may take.
@@ -30,6 +31,15 @@ pub struct WgpuEngine {
 struct State {
     pipelines: Pipelines,
     pool: Pool,
+}
+
+/// Stage after stage, by number and what the last one read back, with what stays on the device.
+type Next<'a> = &'a dyn Fn(usize, &[u32]) -> Option<(Stage, Vec<Delivery>)>;
+
+/// What a stage leaves on the device, and where.
+struct Deliveries<'a> {
+    parts: Vec<Delivery>,
+    results: &'a BTreeMap<&'a str, wgpu::Buffer>,
 }
 
 impl Engine for WgpuEngine {
@@ -61,14 +71,67 @@ impl Engine for WgpuEngine {
         timing: Timing,
         on_stage: OnStage<'_>,
     ) -> Result<RunReport, EngineError> {
+        let next = |index: usize, decision: &[u32]| match program.step(index, decision) {
+            Step::Run(stage) => Some((*stage, Vec::new())),
+            Step::Done => None,
+        };
+        self.run_stages(&next, contents, timing, on_stage, &BTreeMap::new())
+    }
+}
+
+impl WgpuEngine {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// [`EngineError::NoAdapter`] says how to install one.
+    pub fn new(choice: AdapterChoice) -> Result<Self, EngineError> {
+        Ok(Self { opened: open(choice)?, state: Mutex::default() })
+    }
+
+    /// Runs on a device that somebody else owns. Whatever is submitted goes to `queue` before a call returns, so what its owner submits
+    /// later sees it. None of the device's callbacks is set; a panicking handler of uncaptured errors hears nothing of this engine's, which
+    /// are caught in scopes.
+    #[must_use]
+    pub fn on_device(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        Self { opened: borrowed(device, queue), state: Mutex::default() }
+    }
+
+    /// Runs a program and leaves its results on the device, in buffers by name that have the usage `COPY_DST`.
+    ///
+    /// An encoder of the caller's would not do: a stage may be chosen by what the one before found, long passes are split into
+    /// submissions so that no watchdog ends them, and a receiver that a kernel could not finish has to become an error.
+    ///
+    /// # Errors
+    /// As [`Engine::run`], and [`EngineError::Contents`] for a result whose buffer is missing or too small.
+    pub fn run_on_device(
+        &self,
+        program: &dyn DeviceProgram,
+        contents: &BTreeMap<ContentKey, Content>,
+        results: &BTreeMap<&str, wgpu::Buffer>,
+        timing: Timing,
+        on_stage: OnStage<'_>,
+    ) -> Result<RunReport, EngineError> {
+        let next = |index: usize, decision: &[u32]| program.step_on_device(index, decision);
+        self.run_stages(&next, contents, timing, on_stage, results)
+    }
+
+    fn run_stages(
+        &self,
+        next: Next<'_>,
+        contents: &BTreeMap<ContentKey, Content>,
+        timing: Timing,
+        on_stage: OnStage<'_>,
+        results: &BTreeMap<&str, wgpu::Buffer>,
+    ) -> Result<RunReport, EngineError> {
         let mut state = lock(&self.state);
         state.pool.begin_run();
         let started = Instant::now();
         let mut report = RunReport::default();
         let mut decision: Vec<u32> = Vec::new();
         let mut index = 0;
-        while let Step::Run(stage) = program.step(index, &decision) {
-            let result = self.run_stage(&mut state, &stage, contents, timing, &mut report, on_stage);
+        while let Some((stage, parts)) = next(index, &decision) {
+            let deliveries = Deliveries { parts, results };
+            let result = self.run_stage(&mut state, &stage, contents, timing, &mut report, on_stage, &deliveries);
             if result.is_err() {
                 // Whatever a failed stage left behind is not trusted again.
                 state.pool.clear();
@@ -84,6 +147,7 @@ impl Engine for WgpuEngine {
             outputs.retain(|name, _| stage.plan.outputs.iter().any(|id| label(id) == name));
             report.wall_ms = started.elapsed().as_secs_f64() * 1e3;
             report.stages += 1;
+            let outputs = outputs.into_iter().map(|(label, bytes)| (label, Cow::Owned(bytes))).collect();
             if !on_stage(Some(StageReport { index, outputs })) {
                 return Err(EngineError::Interrupted);
             }
@@ -91,17 +155,8 @@ impl Engine for WgpuEngine {
         }
         Ok(report)
     }
-}
 
-impl WgpuEngine {
-    /// Opens a device.
-    ///
-    /// # Errors
-    /// [`EngineError::NoAdapter`] says how to install one.
-    pub fn new(choice: AdapterChoice) -> Result<Self, EngineError> {
-        Ok(Self { opened: open(choice)?, state: Mutex::default() })
-    }
-
+    #[expect(clippy::too_many_arguments, reason = "the state of a run, a stage, and where its results go")]
     fn run_stage(
         &self,
         state: &mut State,
@@ -110,6 +165,7 @@ impl WgpuEngine {
         timing: Timing,
         report: &mut RunReport,
         on_stage: OnStage<'_>,
+        deliveries: &Deliveries<'_>,
     ) -> Result<BTreeMap<String, Vec<u8>>, EngineError> {
         let (plan, device) = (&stage.plan, &self.opened.device);
         self.fail_if_lost(&plan.name)?;
@@ -120,7 +176,7 @@ impl WgpuEngine {
         }
         let scopes = [wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::Internal]
             .map(|filter| device.push_error_scope(filter));
-        let result = self.encode_and_run(state, stage, contents, timing, report, on_stage);
+        let result = self.encode_and_run(state, stage, contents, timing, report, on_stage, deliveries);
         // Scopes close in the reverse of the order in which they were opened.
         let mut caught = None;
         for scope in scopes.into_iter().rev() {
@@ -128,12 +184,35 @@ impl WgpuEngine {
         }
         self.fail_if_lost(&plan.name)?;
         if let Some(error) = caught {
+            if !self.answers() {
+                let reason = error.to_string();
+                lock(&self.opened.lost).get_or_insert_with(|| reason.clone());
+                return Err(EngineError::DeviceLost { stage: plan.name.clone(), reason });
+            }
             return Err(from_wgpu(&plan.name, &error));
         }
         if let Some(reason) = lock(&self.opened.uncaught).take() {
             return Err(EngineError::Refused { stage: plan.name.clone(), reason });
         }
+        if let Err(EngineError::DeviceLost { reason, .. }) = &result {
+            lock(&self.opened.lost).get_or_insert_with(|| reason.clone());
+        }
         result
+    }
+
+    /// Whether the device still makes a buffer. One whose callbacks are not ours says only so that it is lost: what it makes is invalid, and
+    /// the first use of that is refused.
+    fn answers(&self) -> bool {
+        let scope = self.opened.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let buffer = self.opened.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("probe"),
+            size: 8,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let is_mapped = self.wait("probe", &[&buffer]).is_ok();
+        drop(pollster::block_on(scope.pop()));
+        is_mapped
     }
 
     fn fail_if_lost(&self, stage: &str) -> Result<(), EngineError> {
@@ -143,6 +222,7 @@ impl WgpuEngine {
         }
     }
 
+    #[expect(clippy::too_many_arguments, reason = "those of `run_stage`")]
     fn encode_and_run(
         &self,
         state: &mut State,
@@ -151,6 +231,7 @@ impl WgpuEngine {
         timing: Timing,
         report: &mut RunReport,
         on_stage: OnStage<'_>,
+        deliveries: &Deliveries<'_>,
     ) -> Result<BTreeMap<String, Vec<u8>>, EngineError> {
         let (plan, values) = (&stage.plan, &stage.values);
         let (device, queue) = (&self.opened.device, &self.opened.queue);
@@ -184,6 +265,9 @@ impl WgpuEngine {
                 encoding.dispatch(dispatch, &mut encoder, &mut timestamps)?;
             }
             if number == last {
+                for part in &deliveries.parts {
+                    deliver(plan, &slots, part, deliveries.results, &mut encoder)?;
+                }
                 readback = self.copy_outputs(plan, &slots, &outputs, &mut encoder);
             }
             let clock = timestamps.as_ref().and_then(|t| t.resolve(&mut encoder)).cloned();
@@ -199,7 +283,8 @@ impl WgpuEngine {
             }
             if let (Timing::EachPass, [dispatch]) = (timing, dispatches.as_slice()) {
                 let ms = submitted.elapsed().as_secs_f64() * 1e3;
-                report.add_times(vec![PassTime { label: dispatch.pass.label.clone(), ms }]);
+                let label = plan.passes[dispatch.pass].label.clone();
+                report.add_times(vec![PassTime { label, ms }]);
             }
             if number == last {
                 let labels = outputs.iter().map(|id| plan.resources[id.index()].label.clone());
@@ -212,8 +297,8 @@ impl WgpuEngine {
         Ok(BTreeMap::new())
     }
 
-    fn slice_buffer(&self, submissions: &[Vec<Dispatch<'_>>]) -> wgpu::Buffer {
-        let dispatches: Vec<&Dispatch<'_>> = submissions.iter().flatten().collect();
+    fn slice_buffer(&self, submissions: &[Vec<Dispatch>]) -> wgpu::Buffer {
+        let dispatches: Vec<&Dispatch> = submissions.iter().flatten().collect();
         let mut bytes = vec![0u8; (dispatches.len().max(1) as u64 * SLICE_STRIDE) as usize];
         for dispatch in dispatches {
             let at = dispatch.slice * SLICE_STRIDE as usize;

@@ -17,8 +17,10 @@
 //! | [`grazing`] | a sample of a float32 kernel that looks at projected edges | says which differences rounding excuses | the receiver lies in the light's plane |
 //! | [`converged_visibility`] | any mesh, any light | its own standard error | an umbra or a lit region is thinner than the strata: mean and spread can both miss it |
 //!
-//! [`compare`] turns two images into an [`ErrorReport`].
+//! [`compare`] turns two images into an [`ErrorReport`], [`bound_error`] receivers drawn at random into a bound of the error of all, and
+//! [`compare_frames`] a sweep into its flicker.
 
+pub mod bound;
 mod closed_form;
 mod error;
 mod exact_union;
@@ -28,19 +30,24 @@ mod polygon;
 pub mod ray_reference;
 mod receiver;
 mod sampling;
+mod structure;
+pub mod temporal;
 #[cfg(test)]
 mod test_scenes;
 mod vector;
 
+pub use bound::{Drawn, ErrorBound, ErrorNorm, Stratum, bound_error};
 pub use closed_form::{
     AxisRectangle, Sphere, disc_over_disc, half_plane_over_rectangle, rectangle_over_rectangle, sphere_over_rectangle,
     sphere_over_sphere_light,
 };
 pub use error::MeasureError;
 pub use exact_union::{RectangleLight, rectangle_visibility};
-pub use metrics::{ErrorReport, ReferenceImage, RegionError, compare};
+pub use metrics::{ErrorReport, ReferenceImage, RegionError, compare, true_error_interval};
 pub use occlusion_tracer::OcclusionTracer;
 pub use ray_reference::projected_grazing::{ProjectedSample, ProjectedView, grazing, needed_roundings};
 pub use ray_reference::{RayReference, SampleVerdict};
 pub use receiver::{Receiver, Target, Triangle};
 pub use sampling::{Estimate, SamplingPlan, converged_visibility, t_quantile_975};
+pub use structure::Structure;
+pub use temporal::{Frame, TemporalReport, compare_frames};

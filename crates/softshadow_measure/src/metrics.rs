@@ -9,6 +9,7 @@ use std::collections::VecDeque;
 use std::fmt;
 
 use crate::MeasureError;
+use crate::structure::{Structure, structure};
 
 /// Reference visibility up to which a pixel is umbra; from 1 minus it a pixel is lit; in between it is penumbra.
 pub const UMBRA_LIMIT: f32 = 0.002;
@@ -79,6 +80,8 @@ pub struct ErrorReport {
     /// Mean standard error of the reference in the penumbra; `None` when none was given. A difference below about twice
     /// this is not distinguishable from the reference's own noise.
     pub penumbra_reference_se: Option<f64>,
+    /// What neighbouring pixels say; `None` without a width.
+    pub structure: Option<Structure>,
 }
 
 /// A visibility image to measure against.
@@ -162,7 +165,17 @@ pub fn compare(estimate: &[f32], reference: &ReferenceImage<'_>) -> Result<Error
             let sum: f64 = penumbra.iter().map(|&pixel| f64::from(se[pixel])).sum();
             sum / penumbra.len() as f64
         }),
+        structure: reference.width.and_then(|width| structure(estimate, truth, width)),
     })
+}
+
+/// Where the error against the truth lies, given that against a reference whose own error has the root mean square
+/// `standard_error` over the same pixels: both norms differ by the reference's at most, whatever the errors have in common, and two
+/// standard errors leave it room. Holds for root mean square and mean absolute errors.
+#[must_use]
+pub fn true_error_interval(measured: f64, standard_error: f64) -> [f64; 2] {
+    let room = 2.0 * standard_error;
+    [(measured - room).max(0.0), measured + room]
 }
 
 fn fraction(pixels: &[usize], holds: impl Fn(usize) -> bool) -> Option<f64> {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use softshadow_shaders::{Access, Binding, BindingKind, EntryPoint, ShaderError, Stage, TextureShape};
 
 use crate::host::Host;
-use crate::pass::{Blend, Count, Over, Pass, Raster, VertexSource, Work};
+use crate::pass::{Blend, ColorTarget, Count, Over, Pass, Raster, VertexSource, Work};
 use crate::plan::{Plan, SLICE};
 use crate::resource::{Origin, Resource, ResourceId, Shape, TextureFormat};
 
@@ -188,6 +188,12 @@ fn check_raster(
     if raster.colors.iter().any(|c| c.blend != Blend::Replace) && !host.features.float32_blendable {
         return Err(missing("float32-blendable"));
     }
+    let draws_floats = |c: &ColorTarget| {
+        matches!(plan.resources[c.texture.index()].shape, Shape::Texture { format: TextureFormat::Rgba32Float, .. })
+    };
+    if raster.colors.iter().any(draws_floats) && !host.features.float32_drawable {
+        return Err(missing("rgba32float colour targets"));
+    }
     match raster.vertices {
         VertexSource::Corners { buffer, count } => {
             require_written(&pass.label, plan, buffer, written)?;
@@ -204,23 +210,10 @@ fn check_raster(
         }
         VertexSource::Generated(Count::Fixed(_)) => {}
     }
-    let vertex = entry_point(pass, raster.kernel.file, raster.kernel.vertex, Stage::Vertex)?;
-    let mut bindings: Vec<Binding> = vertex.bindings.clone();
-    if let Some(fragment) = raster.kernel.fragment {
-        for binding in &entry_point(pass, raster.kernel.file, fragment, Stage::Fragment)?.bindings {
-            match bindings.iter_mut().find(|b| b.name == binding.name) {
-                Some(shared) => {
-                    shared.access.reads |= binding.access.reads;
-                    shared.access.writes |= binding.access.writes;
-                }
-                None => bindings.push(binding.clone()),
-            }
-        }
-    }
-    check_bindings(plan, pass, host, bindings.iter(), written)?;
-    let colors = raster.colors.iter().map(|c| (c.texture, c.layer, c.clear.is_none(), false));
-    let depth = raster.depth.iter().map(|d| (d.texture, d.layer, d.clear.is_none(), true));
-    for (texture, layer, keeps, is_depth) in colors.chain(depth) {
+    check_bindings(plan, pass, host, bindings(pass)?.iter(), written)?;
+    let colors = raster.colors.iter().map(|c| (c.texture, c.layer, c.clear, false));
+    let depth = raster.depth.iter().map(|d| (d.texture, d.layer, d.clear.map(f64::from), true));
+    for (texture, layer, clear, is_depth) in colors.chain(depth) {
         let resource = &plan.resources[texture.index()];
         let wrong = |problem: &str| {
             let (pass, binding) = (pass.label.clone(), resource.label.clone());
@@ -236,7 +229,10 @@ fn check_raster(
             let (needed, limit) = (u64::from(layer) + 1, u64::from(layers));
             return Err(PlanError::TooLarge { what: resource.label.clone(), needed, limit });
         }
-        if keeps {
+        if clear.is_some_and(|value| !value.is_finite()) {
+            return wrong("is cleared to a number that is not finite, which not every host takes");
+        }
+        if clear.is_none() {
             require_written(&pass.label, plan, texture, written)?;
         }
         written.insert(texture);
@@ -314,6 +310,33 @@ fn mismatch(binding: &Binding, resource: &Resource, host: &Host) -> Option<Strin
         }
         _ => Some(format!("a buffer meets a texture: '{label}'")),
     }
+}
+
+/// What the kernel of a pass binds, each once: that of both stages where it draws, and nothing where it has no kernel.
+///
+/// # Errors
+/// [`PlanError::Shader`] where the kernel does not exist.
+pub fn bindings(pass: &Pass) -> Result<Vec<Binding>, PlanError> {
+    let raster = match &pass.work {
+        Work::Clear { .. } | Work::Copy { .. } => return Ok(Vec::new()),
+        Work::Compute { kernel, .. } => {
+            return Ok(entry_point(pass, kernel.file, kernel.entry, Stage::Compute)?.bindings.clone());
+        }
+        Work::Raster(raster) => raster,
+    };
+    let mut found = entry_point(pass, raster.kernel.file, raster.kernel.vertex, Stage::Vertex)?.bindings.clone();
+    if let Some(fragment) = raster.kernel.fragment {
+        for binding in &entry_point(pass, raster.kernel.file, fragment, Stage::Fragment)?.bindings {
+            match found.iter_mut().find(|b| b.name == binding.name) {
+                Some(shared) => {
+                    shared.access.reads |= binding.access.reads;
+                    shared.access.writes |= binding.access.writes;
+                }
+                None => found.push(binding.clone()),
+            }
+        }
+    }
+    Ok(found)
 }
 
 fn entry_point(pass: &Pass, file: &str, entry: &str, stage: Stage) -> Result<&'static EntryPoint, PlanError> {

@@ -37,6 +37,8 @@ pub struct Features {
     pub raster: bool,
     /// Blends float32 targets.
     pub float32_blendable: bool,
+    /// Draws into colour targets of four float32.
+    pub float32_drawable: bool,
 }
 
 impl Default for Host {
@@ -53,7 +55,7 @@ impl Default for Host {
                 color_targets: 8,
                 color_bytes: 32,
             },
-            features: Features { raster: true, float32_blendable: false },
+            features: Features { raster: true, float32_blendable: false, float32_drawable: true },
         }
     }
 }

@@ -5,19 +5,25 @@ mod check;
 mod engine;
 mod engine_error;
 mod explain;
+mod export;
 mod host;
 mod pass;
 mod plan;
 mod program;
 mod resource;
+mod work;
+mod schedule;
 
-pub use check::{PlanError, check};
+pub use check::{PlanError, bindings, check};
 pub use engine::{AdapterInfo, DeviceKind, Engine, OnStage, PassTime, RunReport, StageReport, Timing};
 pub use engine_error::EngineError;
+pub use export::{Exported, ExportedBinding, shader_text};
 pub use host::{Features, Host, Limits};
 pub use pass::{
     Blend, ColorTarget, Compare, Count, DepthTarget, Kernel, Over, Pass, Raster, RasterKernel, VertexSource, Work,
 };
 pub use plan::{Plan, SLICE};
-pub use program::{Program, Stage, Step, Values};
+pub use program::{Delivery, DeviceProgram, Program, Stage, Step, Values};
 pub use resource::{Content, ContentKey, Origin, Resource, ResourceId, Shape, TextureFormat};
+pub use work::PassWork;
+pub use schedule::{Dispatch, schedule};

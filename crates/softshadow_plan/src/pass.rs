@@ -2,10 +2,12 @@
 
 use std::fmt;
 
+use serde::Serialize;
+
 use crate::resource::ResourceId;
 
 /// A compute kernel: an entry point of a file in `shaders_wgsl/`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 pub struct Kernel {
     /// Path of the file.
     pub file: &'static str,
@@ -14,7 +16,7 @@ pub struct Kernel {
 }
 
 /// A pair of vertex and fragment entry points of one file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 pub struct RasterKernel {
     /// Path of the file.
     pub file: &'static str,
@@ -37,7 +39,7 @@ impl fmt::Display for RasterKernel {
 }
 
 /// One step of a plan.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pass {
     /// Unique name.
     pub label: String,
@@ -50,7 +52,8 @@ pub struct Pass {
 }
 
 /// What a pass does.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Work {
     /// Runs a compute kernel.
     Compute {
@@ -78,7 +81,8 @@ pub enum Work {
 }
 
 /// How many invocations a compute pass has.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Over {
     /// One invocation an item. The engine may split the range, and tells the kernel by its binding `slice`.
     Items {
@@ -92,7 +96,7 @@ pub enum Over {
 }
 
 /// A raster pass.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Raster {
     /// Shaders.
     pub kernel: RasterKernel,
@@ -105,7 +109,8 @@ pub struct Raster {
 }
 
 /// Where the vertices of a raster pass come from. Triangles are never culled: every occluder is two-sided.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum VertexSource {
     /// Corners of 16 bytes: a position at `@location(0)`, a triangle index at `@location(1)`.
     Corners {
@@ -119,7 +124,8 @@ pub enum VertexSource {
 }
 
 /// A number of vertices.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Count {
     /// Known when the plan is made.
     Fixed(u32),
@@ -128,7 +134,7 @@ pub enum Count {
 }
 
 /// A colour target of a raster pass.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ColorTarget {
     /// The texture.
     pub texture: ResourceId,
@@ -141,7 +147,8 @@ pub struct ColorTarget {
 }
 
 /// How a fragment's colour joins the target's.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Blend {
     /// Replaces it.
     Replace,
@@ -154,7 +161,7 @@ pub enum Blend {
 }
 
 /// The depth target of a raster pass.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct DepthTarget {
     /// The texture.
     pub texture: ResourceId,
@@ -167,7 +174,8 @@ pub struct DepthTarget {
 }
 
 /// A depth comparison.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Compare {
     /// The nearer of a depth that grows with distance.
     Less,

@@ -1,5 +1,7 @@
 //! The plan itself and the calls that write it.
 
+use serde::Serialize;
+
 use crate::pass::{Kernel, Over, Pass, Raster, Work};
 use crate::resource::{Content, ContentKey, Origin, Resource, ResourceId, Shape, TextureFormat};
 
@@ -7,7 +9,7 @@ use crate::resource::{Content, ContentKey, Origin, Resource, ResourceId, Shape, 
 pub const SLICE: &str = "slice";
 
 /// Resources and passes, in the order in which they run. Equal requests make equal plans.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Plan {
     /// What the plan computes.
     pub name: String,

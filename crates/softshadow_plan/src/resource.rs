@@ -3,8 +3,10 @@
 use std::hash::Hasher as _;
 use std::sync::Arc;
 
+use serde::Serialize;
+
 /// A resource of one plan: its index.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct ResourceId(pub(crate) u32);
 
 impl ResourceId {
@@ -16,7 +18,7 @@ impl ResourceId {
 }
 
 /// A buffer or texture.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Resource {
     /// Unique name, used in timings, memory rows, errors and GPU labels.
     pub label: String,
@@ -27,7 +29,8 @@ pub struct Resource {
 }
 
 /// Kind and size of a resource.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// Bytes without structure.
     Buffer {
@@ -57,7 +60,8 @@ impl Shape {
 }
 
 /// Texel formats that plans use.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum TextureFormat {
     /// One 32-bit unsigned integer.
     R32Uint,
@@ -81,7 +85,8 @@ impl TextureFormat {
 }
 
 /// Where the contents of a resource come from, and how long they live.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Origin {
     /// Made and used within one run of the plan; undefined until a pass writes it.
     Transient,
@@ -96,7 +101,7 @@ pub enum Origin {
 }
 
 /// Names the bytes of an uploaded resource: equal bytes have equal keys.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct ContentKey(pub u64);
 
 /// Bytes to upload, and their key.

@@ -7,6 +7,7 @@ use softshadow::{Error, SceneError};
 mod python {
     use pyo3::import_exception;
 
+    import_exception!(softshadow.errors, BoundNotMet);
     import_exception!(softshadow.errors, GpuError);
     import_exception!(softshadow.errors, GpuOutOfMemory);
     import_exception!(softshadow.errors, Interrupted);
@@ -33,6 +34,8 @@ pub(crate) fn exception(error: Error) -> PyErr {
         Error::Interrupted => python::Interrupted::new_err(text),
         Error::Measure(_) => python::MeasureError::new_err(text),
         Error::File(_) => python::OutputError::new_err(text),
+        // Its best result has been taken out before.
+        Error::BoundNotMet(_) => python::BoundNotMet::new_err(text),
         // The enum may grow; an error without a class of its own is still one of ours.
         _ => python::SoftShadowError::new_err(text),
     }

@@ -10,6 +10,7 @@ mod compare;
 mod context;
 mod detached;
 mod errors;
+mod foreign;
 mod image;
 mod light;
 mod light_points;
@@ -30,7 +31,9 @@ mod _core {
     #[pymodule_export]
     use super::context::{Context, adapters};
     #[pymodule_export]
-    use super::image::{exr, png_grey16, png_srgb8};
+    use super::foreign::{ForeignCall, ForeignDevice, shader};
+    #[pymodule_export]
+    use super::image::{exr, png_grey16, png_palette8, png_srgb8, svg_png};
     #[pymodule_export]
     use super::light::Light;
     #[pymodule_export]
@@ -44,7 +47,7 @@ mod _core {
     #[pymodule_export]
     use super::technique::{check_technique, technique_defaults};
     #[pymodule_export]
-    use super::visibility::{render, visibility};
+    use super::visibility::{cache_folder, render, visibility, visibility_within};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -2,13 +2,14 @@
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use softshadow::{Options, PictureOptions, Points, Receivers, Shading};
+use softshadow::measure::ErrorNorm;
+use softshadow::{Error, Goal, Limit, Options, PictureOptions, Points, Receivers, Shading};
 
 use crate::arrays::rows;
 use crate::camera::Camera;
 use crate::context::Context;
 use crate::detached::detached_with_progress;
-use crate::errors::{internal_exception, scene_exception};
+use crate::errors::{internal_exception, scene_exception, settings_exception};
 use crate::light::Light;
 use crate::scene::Scene;
 use crate::technique::{json, parse_technique};
@@ -81,7 +82,7 @@ pub(crate) fn receivers_of(
     }
 }
 
-fn lights_of(lights: &[Py<Light>]) -> Vec<softshadow::Light> {
+pub(crate) fn lights_of(lights: &[Py<Light>]) -> Vec<softshadow::Light> {
     lights.iter().map(|light| light.get().0.clone()).collect()
 }
 
@@ -112,6 +113,56 @@ pub(crate) fn visibility<'py>(
         softshadow::visibility(context, scene, &lights, &receivers, &technique, &options, on_progress)
     })?;
     VisibilityArrays::new(py, result)
+}
+
+/// The lit fraction of every light at every receiver by a technique that is chosen for an error or a time; with why not, where nothing
+/// keeps it.
+#[pyfunction]
+#[pyo3(signature = (context, scene, lights, *, camera, points, normals, max_error, max_ms, error_norm, confidence, memory_limit, standard_error, receivers, progress))]
+#[expect(clippy::too_many_arguments, reason = "the keyword arguments of the Python function")]
+pub(crate) fn visibility_within<'py>(
+    py: Python<'py>,
+    context: &Bound<'py, Context>,
+    scene: &Bound<'py, Scene>,
+    lights: Vec<Py<Light>>,
+    camera: Option<Bound<'py, Camera>>,
+    points: Option<PyReadonlyArray2<'py, f64>>,
+    normals: Option<PyReadonlyArray2<'py, f64>>,
+    max_error: Option<f64>,
+    max_ms: Option<f64>,
+    error_norm: &str,
+    confidence: Option<f64>,
+    memory_limit: Option<u64>,
+    standard_error: bool,
+    receivers: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(VisibilityArrays<'py>, Option<String>)> {
+    let (context, scene, lights) = (context.get().get()?, &scene.get().0, lights_of(&lights));
+    let norm: ErrorNorm = error_norm
+        .parse()
+        .map_err(|_| settings_exception(format!("error_norm: 'rmse', 'p99' or 'max' expected, got '{error_norm}'")))?;
+    let limit = match (max_error, max_ms) {
+        (Some(error), None) => Limit::MaxError(error),
+        (None, Some(ms)) => Limit::MaxMs(ms),
+        _ => return Err(settings_exception("max_error, max_ms: give one of them".into())),
+    };
+    let goal = Goal { limit, norm, confidence: confidence.unwrap_or(softshadow::choose::CONFIDENCE) };
+    let options = options(memory_limit, standard_error, receivers, false);
+    let receivers = receivers_of(camera.as_ref(), points.as_ref(), normals.as_ref())?;
+    let (result, reason) = detached_with_progress(py, progress, |on_progress| {
+        match softshadow::visibility_within(context, scene, &lights, &receivers, &goal, &options, on_progress) {
+            Ok(result) => Ok((result, None)),
+            Err(Error::BoundNotMet(unmet)) => Ok((unmet.best, Some(unmet.reason))),
+            Err(error) => Err(error),
+        }
+    })?;
+    Ok((VisibilityArrays::new(py, result)?, reason))
+}
+
+/// Where calibrations of devices are kept; nothing where they are not.
+#[pyfunction]
+pub(crate) fn cache_folder() -> Option<std::path::PathBuf> {
+    softshadow::choose::calibration::cache_folder()
 }
 
 /// A picture of the scene under its lights.

@@ -73,6 +73,23 @@ impl Camera {
         self.size
     }
 
+    /// The camera that sees every `step`th pixel of every `step`th row, from pixel `first` on: each of its pixels looks along the ray of one
+    /// of this camera's.
+    ///
+    /// # Errors
+    /// [`SceneError::Invalid`] for a step of 0, and where no pixel is left.
+    pub fn every(&self, step: u32, first: [u32; 2]) -> Result<Self, SceneError> {
+        let left = |size: u32, first: u32| size.saturating_sub(first).div_ceil(step.max(1));
+        let size = [left(self.size[0], first[0]), left(self.size[1], first[1])];
+        if step == 0 || size.contains(&0) {
+            return Err(SceneError::invalid("camera step", "it must leave at least one pixel of the image"));
+        }
+        let [fx, fy, cx, cy] = self.intrinsics;
+        let k = f64::from(step);
+        let center = |c: f64, first: u32| 0.5 + (c - f64::from(first) - 0.5) / k;
+        Ok(Self { intrinsics: [fx / k, fy / k, center(cx, first[0]), center(cy, first[1])], size, ..*self })
+    }
+
     /// The camera in a scene's local frame.
     #[must_use]
     pub fn local(&self, frame: &LocalFrame) -> LocalCamera {
@@ -124,6 +141,19 @@ mod tests {
         let half_angle = top.angle_between(direction).to_degrees();
         assert!((half_angle - 20.0).abs() < 1e-9, "{half_angle}");
         assert!(top.y > direction.y, "row 0 is the upper row");
+    }
+
+    #[test]
+    fn a_thinned_camera_looks_along_the_rays_of_the_whole_one() {
+        let camera = Camera::look_at([2.0, 3.0, 4.0], [0.5, 0.0, 0.0], None, 40.0, [64, 47]).unwrap();
+        let thinned = camera.every(3, [2, 1]).unwrap();
+        assert_eq!(thinned.size(), [21, 16]);
+        let [whole, thin] = [camera, thinned].map(|camera| camera.local(&LocalFrame::around(None)));
+        let ray = |c: &LocalCamera, x: f64, y: f64| c.corner + c.step_x * (x + 0.5) + c.step_y * (y + 0.5);
+        for (x, y) in [(0.0, 0.0), (20.0, 15.0), (7.0, 11.0)] {
+            assert!(ray(&thin, x, y).distance(ray(&whole, 3.0 * x + 2.0, 3.0 * y + 1.0)) < 1e-12);
+        }
+        assert!(camera.every(0, [0, 0]).is_err() && camera.every(3, [64, 0]).is_err());
     }
 
     #[test]

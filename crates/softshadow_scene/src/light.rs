@@ -89,6 +89,9 @@ fn split(position: f64, count: u32) -> (u32, f64) {
     (index, clamped - f64::from(index))
 }
 
+/// The largest length of a light in local units: float32 holds products of four of them.
+const MAX_LOCAL_LENGTH: f64 = (1 << 30) as f64;
+
 /// A checked area light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Light {
@@ -193,6 +196,37 @@ impl Light {
         self.texture.as_ref()
     }
 
+    /// Checks that place and sizes can be reckoned with in float32 beside a scene.
+    ///
+    /// # Errors
+    /// [`SceneError::Invalid`] for a light that is too far away or too large, with what to take instead.
+    pub fn check_local(&self, frame: &LocalFrame) -> Result<(), SceneError> {
+        let place = self.local(frame);
+        let sizes: &[f64] = match &self.shape {
+            LightShape::Rectangle { width, height } => &[*width, *height],
+            LightShape::Disc { radius } | LightShape::Sphere { radius } => &[*radius],
+            LightShape::Polygon { outline } => {
+                let largest = |axis: usize| outline.iter().map(|corner| corner[axis].abs()).fold(0.0, f64::max);
+                &[largest(0), largest(1)]
+            }
+            LightShape::Sun { .. } => return Ok(()),
+        };
+        let refused = |what: &str, local: f64, fix: &str| {
+            let reason = format!("{what} is {local:.1e} times half the extent of the scene; {fix}");
+            Err(SceneError::invalid("light", reason))
+        };
+        let distance = place.center.abs().max_element();
+        if !(distance <= MAX_LOCAL_LENGTH) {
+            return refused("its distance", distance, "use a sun");
+        }
+        for size in sizes.iter().map(|size| size * place.length_scale) {
+            if !(size <= MAX_LOCAL_LENGTH) {
+                return refused("its size", size, "make it smaller");
+            }
+        }
+        Ok(())
+    }
+
     /// The light in the local frame of a scene, in float64.
     #[must_use]
     pub fn local(&self, frame: &LocalFrame) -> LocalLight {
@@ -286,6 +320,28 @@ mod tests {
             Light::new(LightShape::Disc { radius: 0.0 }, IDENTITY).is_ok(),
             "a light without size casts a hard shadow"
         );
+    }
+
+    #[test]
+    fn lights_out_of_proportion_to_the_scene_are_refused() {
+        let check = |shape: LightShape, distance: f64, extent: f64| {
+            let mut pose = IDENTITY;
+            pose[1][3] = distance;
+            let frame = LocalFrame::around(Some(([-extent; 3], [extent; 3])));
+            Light::new(shape, pose).unwrap().check_local(&frame).map_err(|error| error.to_string())
+        };
+        let square = |size: f64| LightShape::Rectangle { width: size, height: 1.0 };
+        for (size, distance) in [(1.0, 3.0), (0.0, 0.0), (1e6, 1e6), (1e-8, 0.0)] {
+            assert_eq!(check(square(size), distance, 1.0), Ok(()));
+            assert_eq!(check(square(size), distance, 0.01), Ok(()));
+        }
+        assert!(check(square(1e154), 3.0, 1.0).unwrap_err().contains("its size is"));
+        assert_eq!(check(square(1e-320), 3.0, 1.0), Ok(()));
+        assert!(check(LightShape::Sphere { radius: 1.0 }, 1e11, 1.0).unwrap_err().contains("use a sun"));
+        assert!(check(LightShape::Disc { radius: 1.0 }, 1.0, 1e-30).is_err());
+        let long = LightShape::Polygon { outline: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1e20]] };
+        assert!(check(long, 1.0, 1.0).unwrap_err().contains("its size is"));
+        assert_eq!(check(LightShape::Sun { angular_diameter: 0.01 }, 1e200, 1.0), Ok(()));
     }
 
     #[test]

@@ -90,7 +90,8 @@ impl LightSampling {
         match self.spread {
             SampleSpread::Correlated => unit_square(self.pattern, self.count, self.seed),
             SampleSpread::Decorrelated => {
-                let mut all = Vec::with_capacity(self.total() as usize);
+                // Nothing is set aside for a count that the first set refuses.
+                let mut all = Vec::new();
                 for set in 0..self.sets() {
                     all.extend(unit_square(self.pattern, self.count, set_seed(self.seed, set))?);
                 }

@@ -7,6 +7,7 @@ pub mod depth_complexity;
 pub mod hard_shadow_map;
 pub mod occlusion_camera;
 pub mod parts;
+pub mod penumbra_map;
 mod program;
 pub mod ray_traced;
 mod request;
@@ -15,16 +16,17 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Host, Plan, Values};
-use softshadow_scene::{Light, SampleSpread, SceneError};
+use softshadow_scene::{Light, LightSamples, LocalFrame, SampleSpread, SceneError};
 
 pub use block::{Block, blocks};
 pub use depth_complexity::{Attenuation, DepthComplexity};
 pub use hard_shadow_map::HardShadowMap;
-pub use occlusion_camera::{OcclusionCamera, Ramp};
+pub use occlusion_camera::{CameraRamp, OcclusionCamera};
 pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
 pub use parts::shading::Shading;
 use parts::spread;
+pub use penumbra_map::PenumbraMap;
 pub use program::{StageTask, VisibilityProgram};
 pub use ray_traced::RayTraced;
 pub use request::{ReceiverSource, Request, Wants};
@@ -38,6 +40,8 @@ pub enum Technique {
     RayTraced(RayTraced),
     /// One depth map from the light's centre: what softness is compared with.
     HardShadowMap(HardShadowMap),
+    /// A shadow map, and beside it the penumbra of what it shows: fast, and too dark.
+    PenumbraMap(PenumbraMap),
     /// Penumbrae from one camera at the light's centre, whose rays bend around silhouettes.
     OcclusionCamera(OcclusionCamera),
     /// Silhouette edges and counters: as accurate as rays to the same samples.
@@ -70,9 +74,33 @@ impl Technique {
         vec![
             Self::RayTraced(RayTraced::default()),
             Self::HardShadowMap(HardShadowMap::default()),
+            Self::PenumbraMap(PenumbraMap::default()),
             Self::OcclusionCamera(OcclusionCamera::default()),
             Self::DepthComplexity(DepthComplexity::default()),
         ]
+    }
+
+    /// Settings in rising quality, of which a search for the cheapest that is good enough takes one; empty where more effort does not
+    /// lead to the truth.
+    #[must_use]
+    pub fn rising_quality(&self) -> Vec<Self> {
+        match self {
+            Self::RayTraced(settings) => settings.rising_quality().map(Self::RayTraced).collect(),
+            Self::DepthComplexity(settings) => settings.rising_quality().map(Self::DepthComplexity).collect(),
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => Vec::new(),
+        }
+    }
+
+    /// The root mean square error in penumbrae that its samples lead to expect, where nothing else makes it wrong. It has to be measured
+    /// for all others.
+    #[must_use]
+    pub fn expected_error(&self) -> Option<f64> {
+        match self {
+            Self::RayTraced(_) | Self::DepthComplexity(_) => {
+                Some(spread::expected_error(self.samples(), self.passes()))
+            }
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => None,
+        }
     }
 
     /// The name by which settings files and the command line know it.
@@ -81,6 +109,7 @@ impl Technique {
         match self {
             Self::RayTraced(_) => "ray_traced",
             Self::HardShadowMap(_) => "hard_shadow_map",
+            Self::PenumbraMap(_) => "penumbra_map",
             Self::OcclusionCamera(_) => "occlusion_camera",
             Self::DepthComplexity(_) => "depth_complexity",
         }
@@ -89,7 +118,7 @@ impl Technique {
     /// Whether it works on silhouette edges, and wants to know what hides each light.
     #[must_use]
     pub fn wants_occluders(&self) -> bool {
-        matches!(self, Self::DepthComplexity(_) | Self::OcclusionCamera(_))
+        matches!(self, Self::PenumbraMap(_) | Self::OcclusionCamera(_) | Self::DepthComplexity(_))
     }
 
     /// Checks the settings.
@@ -100,6 +129,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.check(),
             Self::HardShadowMap(settings) => settings.check(),
+            Self::PenumbraMap(settings) => settings.check(),
             Self::OcclusionCamera(settings) => settings.check(),
             Self::DepthComplexity(settings) => settings.check(),
         }
@@ -110,7 +140,7 @@ impl Technique {
     pub fn draws(&self) -> bool {
         match self {
             Self::RayTraced(_) => false,
-            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => true,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => true,
             Self::DepthComplexity(settings) => settings.evaluation == depth_complexity::Evaluation::Blended,
         }
     }
@@ -131,8 +161,9 @@ impl Technique {
             return Err(TechniqueError::Setting { technique: self.name(), setting: "device", reason });
         }
         match self {
+            Self::PenumbraMap(settings) => settings.check_call(lights),
+            Self::OcclusionCamera(settings) => settings.check_call(lights, host),
             Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
-            Self::OcclusionCamera(settings) => settings.check_call(lights),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
     }
@@ -144,7 +175,7 @@ impl Technique {
     pub fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_scene(scene),
-            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::OcclusionCamera(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => Ok(()),
         }
     }
 
@@ -156,8 +187,21 @@ impl Technique {
         match self {
             Self::DepthComplexity(settings) => settings.check_occluders(occluders),
             Self::OcclusionCamera(settings) => settings.check_occluders(occluders.iter().map(Arc::as_ref)),
-            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) => Ok(()),
         }
+    }
+
+    /// Checks whether a light's samples can be made.
+    ///
+    /// # Errors
+    /// [`TechniqueError::Scene`] says why not.
+    pub fn check_light(&self, light: &Light, frame: &LocalFrame) -> Result<(), TechniqueError> {
+        let sampling = match self {
+            Self::RayTraced(settings) => settings.sampling(0),
+            Self::DepthComplexity(settings) => settings.sampling(0),
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => return Ok(()),
+        };
+        Ok(LightSamples::new(light, frame, &sampling).map(drop)?)
     }
 
     /// Whether pixels are averaged with their neighbours.
@@ -166,7 +210,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.spread == SampleSpread::Interleaved,
             Self::DepthComplexity(settings) => settings.spread == SampleSpread::Interleaved,
-            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => false,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => false,
         }
     }
 
@@ -175,7 +219,7 @@ impl Technique {
     pub fn stages(&self) -> u32 {
         match self {
             Self::DepthComplexity(settings) => settings.stages(),
-            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 1,
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 1,
         }
     }
 
@@ -185,7 +229,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.passes,
             Self::DepthComplexity(settings) => settings.passes,
-            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 1,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 1,
         }
     }
 
@@ -195,7 +239,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.samples,
             Self::DepthComplexity(settings) => settings.samples,
-            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 1,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 1,
         }
     }
 
@@ -205,7 +249,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.halo_rows(),
             Self::DepthComplexity(settings) => settings.halo_rows(),
-            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 0,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 0,
         }
     }
 
@@ -215,7 +259,7 @@ impl Technique {
     pub fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64, is_semi_opaque: bool) -> u64 {
         match self {
             Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes, is_semi_opaque),
-            Self::HardShadowMap(_) | Self::OcclusionCamera(_) => 4 * channels,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 4 * channels,
             Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels, is_semi_opaque),
         }
     }
@@ -226,6 +270,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::plan(request, settings),
             Self::HardShadowMap(settings) => hard_shadow_map::plan(request, settings),
+            Self::PenumbraMap(settings) => penumbra_map::plan(request, settings),
             Self::OcclusionCamera(settings) => occlusion_camera::plan(request, settings),
             Self::DepthComplexity(settings) => depth_complexity::plan(request, settings),
         }
@@ -239,6 +284,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::values(request, settings, light, pass),
             Self::HardShadowMap(settings) => hard_shadow_map::values(request, settings, light),
+            Self::PenumbraMap(settings) => penumbra_map::values(request, settings, light),
             Self::OcclusionCamera(settings) => occlusion_camera::values(request, settings, light),
             Self::DepthComplexity(settings) => depth_complexity::values(request, settings, light, pass),
         }

@@ -34,7 +34,7 @@
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{
-    Blend, ColorTarget, Compare, Count, DepthTarget, Kernel, Origin, Over, Plan, Raster, RasterKernel, ResourceId,
+    Blend, ColorTarget, Compare, Count, DepthTarget, Host, Kernel, Origin, Over, Plan, Raster, RasterKernel, ResourceId,
     Shape, TextureFormat, Values, VertexSource,
 };
 use softshadow_scene::{Light, LightSampling, LightShape, SamplePattern};
@@ -60,13 +60,13 @@ pub struct OcclusionCamera {
     /// What hides a moved receiver is nearer to the light by this share of the distance from silhouette to receiver.
     pub bias: f32,
     /// What share of the light a silhouette hides.
-    pub ramp: Ramp,
+    pub ramp: CameraRamp,
 }
 
 /// How much of the light lies beyond a silhouette.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Ramp {
+pub enum CameraRamp {
     /// The share of the light's own outline.
     #[default]
     Outline,
@@ -76,7 +76,7 @@ pub enum Ramp {
 
 impl Default for OcclusionCamera {
     fn default() -> Self {
-        Self { resolution: 1024, steps: MOST_STEPS, bias: 0.25, ramp: Ramp::Outline }
+        Self { resolution: 1024, steps: MOST_STEPS, bias: 0.25, ramp: CameraRamp::Outline }
     }
 }
 
@@ -171,7 +171,13 @@ impl OcclusionCamera {
         Ok(())
     }
 
-    pub(crate) fn check_call(&self, lights: &[Light]) -> Result<(), TechniqueError> {
+    #[expect(clippy::unused_self, reason = "all techniques ask their settings")]
+    pub(crate) fn check_call(&self, lights: &[Light], host: &Host) -> Result<(), TechniqueError> {
+        if !host.features.float32_drawable {
+            let reason = "draws into rgba32float targets, which this device does not do (GL does not); use a Vulkan, Metal or D3D12 \
+                          device, or penumbra_map, or ray_traced";
+            return Err(TechniqueError::Setting { technique: NAME, setting: "device", reason: reason.into() });
+        }
         let corners = lights.iter().map(|light| match light.shape() {
             LightShape::Polygon { outline } => outline.len(),
             _ => 0,
@@ -362,7 +368,7 @@ fn camera_light(request: &Request<'_>, settings: &OcclusionCamera, light: &Light
         low: low.as_vec3().to_array(),
         half_size: half_size as f32,
         high: high.as_vec3().to_array(),
-        ramp: u32::from(settings.ramp == Ramp::Bernstein),
+        ramp: u32::from(settings.ramp == CameraRamp::Bernstein),
         steps: settings.steps,
         bias: settings.bias,
         twice_area: twice_area.abs() as f32,

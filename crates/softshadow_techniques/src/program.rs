@@ -109,7 +109,7 @@ impl VisibilityProgram<'_> {
     /// Checks what would make a stage fail, so that [`Program::step`] cannot.
     ///
     /// # Errors
-    /// As [`Technique::check`], [`Technique::check_call`], [`Technique::check_scene`] and [`Technique::values`].
+    /// As [`Technique::check`], [`Technique::check_call`], [`Technique::check_scene`] and [`Technique::check_light`].
     pub fn check(&self) -> Result<(), TechniqueError> {
         self.technique.check()?;
         self.technique.check_call(self.receivers, self.lights, &self.host)?;
@@ -119,13 +119,12 @@ impl VisibilityProgram<'_> {
             return Err(TechniqueError::Setting { technique: self.technique.name(), setting: "occluders", reason });
         }
         self.technique.check_occluders(self.occluders)?;
+        self.lights.iter().try_for_each(|light| light.check_local(&self.scene.local.frame))?;
         if let ReceiverSource::Points(points) = self.receivers {
             points.check_local(&self.scene.local.frame)?;
         }
-        match self.task(0) {
-            Some(task) => self.stage(task, &[]).map(|_| ()),
-            None => Ok(()),
-        }
+        let frame = &self.scene.local.frame;
+        self.lights.iter().try_for_each(|light| self.technique.check_light(light, frame))
     }
 }
 
@@ -133,7 +132,7 @@ impl Program for VisibilityProgram<'_> {
     fn step(&self, index: usize, decision: &[u32]) -> Step {
         match self.task(index).map(|task| self.stage(task, decision)) {
             Some(Ok((plan, values))) => Step::run(plan, values),
-            // `check` has made the first stage already, and stages differ in numbers only.
+            // `check` has made every light's samples, and nothing else can fail.
             Some(Err(_)) | None => Step::Done,
         }
     }

@@ -23,6 +23,7 @@ use softshadow_techniques::parts::occluder_buffers::{EdgeRecord, FaceRecord, Inc
 use softshadow_techniques::parts::receivers::{CameraClip, CameraRays, PointRange, RECEIVER_BYTES, Receiver, SubScene};
 use softshadow_techniques::parts::shading::{MaterialRecord, ShadingRecord};
 use softshadow_techniques::parts::shadow_views::{ShadowView, ShadowViews};
+use softshadow_techniques::penumbra_map::{MapLayer, PenumbraLight, Ramp};
 use softshadow_techniques::ray_traced::{ProbeImage, TraceRange};
 
 /// Members and bytes of a struct.
@@ -52,6 +53,8 @@ const PAIRS: &[Pair] = &[
     ("Corner", size_of::<Corner>(), "shared/triangle.wgsl", "Corner"),
     ("ProbeImage", size_of::<ProbeImage>(), "ray_traced/choose.wgsl", "ProbeImage"),
     ("ShadowView", size_of::<ShadowView>(), "shared/shadow_view.wgsl", "ShadowView"),
+    ("PenumbraLight", size_of::<PenumbraLight>(), "penumbra_map/light.wgsl", "PenumbraLight"),
+    ("MapLayer", size_of::<MapLayer>(), "penumbra_map/light.wgsl", "MapLayer"),
     ("FaceRecord", size_of::<FaceRecord>(), "shared/occluders.wgsl", "Face"),
     ("EdgeRecord", size_of::<EdgeRecord>(), "shared/occluders.wgsl", "OccluderEdge"),
     ("IncidentFace", size_of::<IncidentFace>(), "shared/occluders.wgsl", "IncidentFace"),
@@ -114,7 +117,7 @@ fn layout(body: &str) -> Layout {
             "[f32; 2]" => 8,
             "[f32; 3]" => 12,
             "[u32; 4]" => 16,
-            "[[u32; 4]; 64]" => 64 * 16,
+            "[[u32; 4]; 64]" | "[[f32; 4]; MOST_CORNERS]" => 64 * 16,
             "[[f32; 2]; MOST_CORNERS]" => 64 * 8,
             "[ShadowView; 6]" => 6 * size_of::<ShadowView>() as u32,
             other => panic!("teach this test the size of '{other}'"),
@@ -299,6 +302,21 @@ fn wedges_are_drawn_and_counted_as_plans_say() {
 fn light_silhouettes_are_as_long_as_plans_say() {
     assert_eq!(u64::from(twin("light_silhouettes/list.wgsl", "LightSilhouette").bytes), LIGHT_SILHOUETTE_BYTES);
     assert_eq!(twin("light_silhouettes/list.wgsl", "DrawArguments").bytes, 16);
+}
+
+#[test]
+fn penumbrae_are_drawn_and_counted_as_plans_say() {
+    let triangles = constant(shader("penumbra_map/hull.wgsl"), "HULL_TRIANGLES").unwrap();
+    let text = source("src/penumbra_map/mod.rs");
+    assert_eq!(constant(&text, "HULL_CORNERS"), Some(3 * triangles));
+    assert_eq!(
+        constant(&text, "COUNT_BYTES"),
+        Some(u64::from(twin("penumbra_map/look_up.wgsl", "LookUpCounts").bytes))
+    );
+    // Ramps are numbers there and an enumeration here.
+    let ramps =
+        ["RAMP_LIGHT", "RAMP_LINEAR", "RAMP_PAPER"].map(|name| constant(shader("penumbra_map/light.wgsl"), name));
+    assert_eq!(ramps, [Ramp::Light, Ramp::Linear, Ramp::Paper].map(|ramp| Some(ramp as u64)));
 }
 
 #[test]

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import json
+import math
 import statistics
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -93,9 +96,10 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--size", type=int, default=512, help="width and height in pixels")
     parser.add_argument("--rounds", type=int, default=7, help="turns after the warm-up")
     parser.add_argument("--device", default="auto")
+    parser.add_argument("--json", type=Path, help="also writes a line of JSON for each row, which reports take")
     chosen = parser.parse_args(arguments)
     tracers, skipped = installed()
-    done = 0
+    done, recorded = 0, list[str]()
     for name in chosen.scene or ["bunny"]:
         try:
             model = find(name, chosen.size)
@@ -105,6 +109,9 @@ def main(arguments: list[str] | None = None) -> int:
             continue
         skipped += found.refused
         print("\n".join([*lines(found), *ratio_lines(found)]))
+        recorded += json_lines(found)
+        if chosen.json:
+            chosen.json.write_text("".join(f"{line}\n" for line in recorded), encoding="utf-8")
         done += 1
     print(f"{len(skipped)} skipped" + "".join(f"\n- {reason}" for reason in skipped))
     return 0 if done and tracers else 1
@@ -222,6 +229,34 @@ def lines(found: Beside) -> list[str]:
         *table,
         "",
     ]
+
+
+def json_lines(found: Beside) -> list[str]:
+    """Every row as an object; a root mean square error of nothing is null."""
+    return [
+        json.dumps(
+            {
+                "kind": "peer",
+                "scene": found.model,
+                "size": found.size,
+                "tracer": row.tracer,
+                "samples": row.samples,
+                "ours": row.ours,
+                "times_ms": row.times_ms,
+                "rmse": _known(row.rmse),
+                "is_slow": row.is_slow,
+                "receivers": found.receivers,
+                "in_penumbra": found.in_penumbra,
+                "reference_standard_error": _known(found.standard_error),
+            },
+            allow_nan=False,
+        )
+        for row in found.rows
+    ]
+
+
+def _known(number: float) -> float | None:
+    return None if math.isnan(number) else number
 
 
 def fastest(rows: list[Row], level: float) -> Row | None:

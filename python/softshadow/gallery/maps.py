@@ -43,7 +43,7 @@ def growing(studio: Studio) -> Exhibit:
     )
 
 
-def concavities(studio: Studio) -> Exhibit:
+def forks(studio: Studio) -> Exhibit:
     """A fork: many silhouettes within one penumbra (figures 7 and 13)."""
     shipped = scenes.load("fork")
     view = View(scene=shipped.scene, light=shipped.light, camera=shipped.camera, exposure=1.0)
@@ -52,7 +52,7 @@ def concavities(studio: Studio) -> Exhibit:
     one = studio.panel("one", "one step: dark spots, and borders of map quads", view, OcclusionCamera(steps=1), truth)
     hard = studio.panel("hard", "one depth map", view, _HARD, truth)
     return Exhibit(
-        name="concavities",
+        name="forks",
         title="Small concavities",
         look="Between tines several silhouettes meet in one texel of the map; what it cannot hold is dark or bright in "
         "spots, with steps between right and wrong.",

@@ -78,7 +78,7 @@ fn an_empty_scene_shades_nothing() {
             assert_eq!(ask(&empty, &[light()], &turned, &technique).unwrap().values, [0.0]);
             let image = ask(&empty, &[light()], &Receivers::Camera(camera), &technique).unwrap();
             assert!(image.values.len() == 48 && image.values.iter().all(|v| v.is_nan()));
-            assert!(image.valid.iter().all(|v| !v) && image.info.valid_receivers == 0);
+            assert!(image.valid.iter().all(|v| !v) && image.info.valid_receivers == Some(0));
         }
     }
     // Nor are zero receivers an error.
@@ -201,4 +201,33 @@ fn receivers_that_cannot_be_are_named() {
             );
         }
     }
+}
+
+#[test]
+fn lights_out_of_proportion_are_refused_before_float32_makes_them_infinite() {
+    for (shape, height, words) in [
+        (rectangle(1e154, 1.0), 2.0, "light: its size"),
+        (LightShape::Disc { radius: 1e20 }, 2.0, "light: its size"),
+        (LightShape::Sphere { radius: 1.0 }, 1e30, "use a sun"),
+    ] {
+        let lights = [light(), lamp(shape, [0.0, 0.0, height])];
+        let outcome = ask(&shade(), &lights, &points(vec![[0.5, 0.0, 0.0]]), &ray_traced(8));
+        let error = refused(outcome).to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+#[test]
+fn results_without_room_are_refused_before_anything_is_computed() {
+    let camera = Camera::look_at([0.0, 0.0, 9.0], [0.0; 3], None, 40.0, [8192, 8192]).unwrap();
+    let options = Options { sample_masks: true, ..Options::default() };
+    let (shade, receivers) = (shade(), Receivers::Camera(camera));
+    let outcome = visibility(context(), &shade, &[light()], &receivers, &ray_traced(32768), &options, &mut |_, _| {
+        panic!("begun")
+    });
+    let error = refused(outcome);
+    assert!(
+        matches!(&error, Error::TooLarge { what, needed, .. } if what == "bytes of results" && *needed > 1 << 41),
+        "{error}"
+    );
 }

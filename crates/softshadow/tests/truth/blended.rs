@@ -260,7 +260,7 @@ fn shadow_volumes_count_nearly_what_rays_count() {
         let pairs = words(&rays).into_iter().zip(words(&volumes)).collect::<Vec<_>>();
         let differ = pairs.chunks(2).filter(|pair| pair.iter().any(|(a, b)| a != b)).count();
         let hidden = pairs.chunks(2).filter(|pair| pair.iter().any(|(a, _)| *a != 0)).count();
-        (differ, rays.info.valid_receivers, hidden)
+        (differ, rays.info.valid_receivers.unwrap_or_default(), hidden)
     };
     let mut total = (0, 0);
     let mut add = |name: &str, (differ, valid, hidden): (usize, usize, usize)| {

@@ -4,8 +4,8 @@ use std::cell::Cell;
 use std::sync::OnceLock;
 
 use softshadow::{
-    Camera, Context, DepthComplexity, DeviceChoice, HardShadowMap, Light, LightShape, OcclusionCamera, Options, Points,
-    RayTraced, Receivers, Scene, Technique, Visibility, look_at, procedural, visibility,
+    Camera, Context, DepthComplexity, DeviceChoice, HardShadowMap, Light, LightShape, OcclusionCamera, Options,
+    PenumbraMap, Points, Ramp, RayTraced, Receivers, Scene, Technique, Visibility, look_at, procedural, visibility,
 };
 
 use crate::shapes::Point;
@@ -55,6 +55,10 @@ pub(crate) fn ray_traced(samples: u32) -> Technique {
 
 pub(crate) fn hard_shadow_map(resolution: u32) -> Technique {
     Technique::HardShadowMap(HardShadowMap { resolution })
+}
+
+pub(crate) fn penumbra_map(resolution: u32, ramp: Ramp) -> Technique {
+    Technique::PenumbraMap(PenumbraMap { resolution, ramp })
 }
 
 pub(crate) fn occlusion_camera(resolution: u32) -> Technique {

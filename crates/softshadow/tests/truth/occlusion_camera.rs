@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use softshadow::measure::half_plane_over_rectangle;
-use softshadow::{Light, LightShape, OcclusionCamera, Ramp, Receivers, Technique, Visibility, look_at};
+use softshadow::{CameraRamp, Light, LightShape, OcclusionCamera, Receivers, Technique, Visibility, look_at};
 
 use crate::common::{Random, hard_shadow_map, lamp, occlusion_camera, ray_traced, rectangle, see, surface_points};
 use crate::shapes::{Point, Triangle, cuboid, map, plate, scene, sphere, turned};
@@ -63,7 +63,7 @@ fn past_one_edge_the_ramp_is_that_of_a_rectangle() {
         };
         let values = |technique: &Technique| seen(&triangles, &light, &receivers, technique);
         let outline = values(&occlusion_camera(1024));
-        let bernstein = values(&camera(OcclusionCamera { ramp: Ramp::Bernstein, ..OcclusionCamera::default() }));
+        let bernstein = values(&camera(OcclusionCamera { ramp: CameraRamp::Bernstein, ..OcclusionCamera::default() }));
         let hard = errors(&values(&hard_shadow_map(1024)).values, positions.iter().map(truth));
         let found = errors(&outline.values, positions.iter().map(truth));
         let as_published = errors(&bernstein.values, positions.iter().map(published));

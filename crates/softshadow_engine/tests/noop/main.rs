@@ -4,6 +4,7 @@
 //! Only copies and clears have an effect there: outputs have the right size and hold zeros.
 
 mod failures;
+mod foreign;
 mod lost;
 mod programs;
 mod runs;

@@ -11,8 +11,8 @@ use softshadow_scene::{
 use softshadow_techniques::depth_complexity::{Counters, Evaluation, OccluderUnit};
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
-    DepthComplexity, HardShadowMap, OccluderContents, OcclusionCamera, RayTraced, ReceiverSource, SceneContents,
-    Shading, Technique, VisibilityProgram, Wants, blocks,
+    DepthComplexity, HardShadowMap, OccluderContents, OcclusionCamera, PenumbraMap, RayTraced, ReceiverSource,
+    SceneContents, Shading, Technique, VisibilityProgram, Wants, blocks,
 };
 
 use crate::programs::engine;
@@ -47,6 +47,7 @@ fn techniques() -> Vec<Technique> {
         |samples, probes, passes| Technique::RayTraced(RayTraced { samples, probes, passes, ..RayTraced::default() });
     let mut all = vec![traced(64, 0, 1), traced(33, 8, 3), traced(1, 0, 1)];
     all.extend([16, 300].map(|resolution| Technique::HardShadowMap(HardShadowMap { resolution })));
+    all.push(Technique::PenumbraMap(PenumbraMap { resolution: 300, ..PenumbraMap::default() }));
     all.push(Technique::OcclusionCamera(OcclusionCamera { resolution: 48, ..OcclusionCamera::default() }));
     let folded =
         |samples, passes| Technique::DepthComplexity(DepthComplexity { samples, passes, ..DepthComplexity::default() });
@@ -180,11 +181,14 @@ fn check_sizes(program: &VisibilityProgram<'_>, rows: &[BTreeMap<String, usize>]
             expected.insert("visibility".to_owned(), count * 4 * 3);
             if matches!(program.technique, Technique::OcclusionCamera(_)) {
                 expected.insert("camera counts".to_owned(), 16);
-            } else if !matches!(program.technique, Technique::HardShadowMap(_)) {
+            } else if !matches!(program.technique, Technique::HardShadowMap(_) | Technique::PenumbraMap(_)) {
                 let words = program.technique.samples().div_ceil(32) as usize;
                 expected.insert("standard error".to_owned(), count * 4 * 3);
                 expected.insert("blocked samples".to_owned(), count * 4 * words);
             }
+        }
+        if matches!(program.technique, Technique::PenumbraMap(_)) && program.occluders[task.light].edge_count > 0 {
+            expected.insert("receivers astray".to_owned(), 4);
         }
         if last_pass && task.light + 1 == program.lights.len() && program.wants.picture.is_some() {
             expected.insert("color".to_owned(), count * 16);

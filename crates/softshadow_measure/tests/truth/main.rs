@@ -4,10 +4,12 @@
 
 #![expect(clippy::print_stdout, reason = "the measured figures, shown by --nocapture")]
 
+mod bounds;
 mod closed_forms;
 mod exact_union;
 mod kernel32;
 mod metrics;
+mod planted;
 mod random;
 mod rays_exact;
 mod rays_far;

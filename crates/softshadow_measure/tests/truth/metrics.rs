@@ -1,6 +1,6 @@
 //! Defects of known size are measured at their size.
 
-use softshadow_measure::{ErrorReport, MeasureError, ReferenceImage, compare};
+use softshadow_measure::{ErrorReport, MeasureError, ReferenceImage, compare, true_error_interval};
 
 const WIDTH: usize = 64;
 
@@ -111,6 +111,29 @@ fn percentiles_are_nearest_ranks() {
     assert!(close(found.penumbra_reference_se.unwrap(), 0.001));
     assert_eq!(found.largest_gross_component, None);
     assert_eq!((found.leak_fraction, found.false_shadow_fraction), (None, None));
+}
+
+#[test]
+fn an_interval_holds_the_error_against_the_truth_as_long_as_the_reference_knows_its_own() {
+    let count = 20_000_u32;
+    // Reference errors that the estimate shares, has nothing of, or has the other way round.
+    let wave = |k: u32, step: f64| (f64::from(k) * step).sin() * std::f64::consts::SQRT_2;
+    for (own, shared, noise) in [(0.02, 0.0, 0.005), (0.0, 1.0, 0.01), (0.003, -1.0, 0.01), (0.01, 0.5, 0.0)] {
+        let reference_error = |k: u32| noise * wave(k, 0.7);
+        let estimate_error = |k: u32| own * wave(k, 1.9) + shared * reference_error(k);
+        let truth = |k: u32| 0.2 + 0.6 * f64::from(k) / f64::from(count);
+        let visibility: Vec<f32> = (0..count).map(|k| (truth(k) + reference_error(k)) as f32).collect();
+        let estimate: Vec<f32> = (0..count).map(|k| (truth(k) + estimate_error(k)) as f32).collect();
+        let image = ReferenceImage { visibility: &visibility, standard_error: None, width: None };
+        let measured = compare(&estimate, &image).unwrap().penumbra.unwrap().rmse;
+        let exact = ((0..count).map(|k| estimate_error(k).powi(2)).sum::<f64>() / f64::from(count)).sqrt();
+        let [low, high] = true_error_interval(measured, noise);
+        assert!((low - 1e-6..=high + 1e-6).contains(&exact), "{exact} outside {low}..{high}");
+        // A reference that thinks too well of itself is found out.
+        let [low, high] = true_error_interval(measured, noise / 100.0);
+        let outside = !(low - 1e-6..=high + 1e-6).contains(&exact);
+        assert_eq!(outside, noise > 0.0, "{exact} and {low}..{high}");
+    }
 }
 
 #[test]

@@ -7,8 +7,9 @@ use softshadow_shaders::{EMBEDDED, Stage, module};
 /// Kernels of techniques that draw triangles.
 const DRAWS: &[&str] = &[
     "hard_shadow_map/",
-    "occlusion_camera/",
     "light_silhouettes/",
+    "penumbra_map/",
+    "occlusion_camera/",
     "depth_complexity/blended/",
     "receivers/place_on_triangles.wgsl",
 ];

@@ -99,4 +99,13 @@ fn abilities() {
         host.features.float32_blendable = true;
         assert_eq!(check(&plan, &host), Ok(()), "{blend:?}");
     }
+    let mut plan = small_plan();
+    let target = raster_of(&mut plan).colors[0].texture;
+    let mut host = Host::default();
+    host.features.float32_drawable = false;
+    assert_eq!(check(&plan, &host), Ok(()));
+    if let Shape::Texture { format, .. } = &mut plan.resources[target.index()].shape {
+        *format = TextureFormat::Rgba32Float;
+    }
+    assert_eq!(check(&plan, &host), missing("rgba32float colour targets"));
 }

@@ -2,6 +2,7 @@
 //! that passes; the kernels are the real ones.
 
 mod bindings;
+mod export;
 mod limits;
 mod memory;
 mod order;

@@ -1,6 +1,6 @@
 //! Scenes that are a page of JSON: named parts made of primitives, one light and one camera.
 //!
-//! Tests, the benchmark and the demonstration share the scenes of [`names`]; `tests/scenes/` holds their text. Y is
+//! Tests, the benchmark and the demonstration share the scenes of [`names`]; `scenes/` holds their text. Y is
 //! up in all of them, lengths are metres. A text is untrusted like any file: unknown fields are refused, and counts
 //! are checked before anything is allocated.
 
@@ -20,11 +20,11 @@ use crate::scene::Scene;
 pub const MAX_PROCEDURAL_TRIANGLES: u64 = 1 << 22;
 
 const SHIPPED: [(&str, &str); 5] = [
-    ("canopy", include_str!("../../../../tests/scenes/canopy.json")),
-    ("cards", include_str!("../../../../tests/scenes/cards.json")),
-    ("fork", include_str!("../../../../tests/scenes/fork.json")),
-    ("hall", include_str!("../../../../tests/scenes/hall.json")),
-    ("toruses", include_str!("../../../../tests/scenes/toruses.json")),
+    ("canopy", include_str!("../../scenes/canopy.json")),
+    ("cards", include_str!("../../scenes/cards.json")),
+    ("fork", include_str!("../../scenes/fork.json")),
+    ("hall", include_str!("../../scenes/hall.json")),
+    ("toruses", include_str!("../../scenes/toruses.json")),
 ];
 
 /// A parsed and checked description; [`ProceduralScene::build`] makes its meshes.

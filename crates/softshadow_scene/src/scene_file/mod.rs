@@ -23,6 +23,9 @@ use crate::scene::Scene;
 /// The largest file that is read, and the most that all buffers of one glTF file may hold together.
 pub const MAX_FILE_BYTES: u64 = 8 << 30;
 
+/// The most meshes: without the limit a small file could ask for endless work that makes no triangle.
+const MAX_MESHES: u64 = 1 << 20;
+
 /// What a file holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
@@ -160,6 +163,13 @@ impl<'a> RegularFile<'a> {
         self.file.take(limit).read_to_end(&mut bytes).map_err(|e| unreadable(self.path, e.to_string()))?;
         Ok(bytes)
     }
+}
+
+fn check_limit(what: &str, needed: u64, limit: u64) -> Result<(), SceneError> {
+    if needed > limit {
+        return Err(SceneError::TooLarge { what: what.into(), needed, limit });
+    }
+    Ok(())
 }
 
 fn unreadable(path: &Path, reason: impl Into<String>) -> SceneError {

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::invalid;
+use super::{MAX_MESHES, check_limit, invalid};
 use crate::error::SceneError;
 use crate::mesh::{MAX_TRIANGLES, Material, Mesh};
 use crate::scene::Scene;
@@ -88,6 +88,9 @@ impl Contents {
             Some("f") => self.read_face(words, path, line)?,
             Some("o" | "g") => {
                 let name = words.collect::<Vec<_>>().join(" ");
+                // One without a face is no mesh.
+                self.groups.pop_if(|group| group.triangles.is_empty());
+                check_limit("meshes of the scene", self.groups.len() as u64 + 1, MAX_MESHES)?;
                 self.groups.push(Group { name, triangles: Vec::new() });
             }
             Some(keyword) if HARMLESS.contains(&keyword) => {}
@@ -181,10 +184,7 @@ impl Contents {
 
     fn push_triangle(&mut self, triangle: [u32; 3]) -> Result<(), SceneError> {
         self.triangle_count += 1;
-        if self.triangle_count > MAX_TRIANGLES {
-            let what = "triangles of the scene".into();
-            return Err(SceneError::TooLarge { what, needed: self.triangle_count, limit: MAX_TRIANGLES });
-        }
+        check_limit("triangles of the scene", self.triangle_count, MAX_TRIANGLES)?;
         match self.groups.last_mut() {
             Some(group) => group.triangles.push(triangle),
             None => self.groups.push(Group { name: String::new(), triangles: vec![triangle] }),

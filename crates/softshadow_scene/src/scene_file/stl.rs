@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::invalid;
+use super::{MAX_MESHES, check_limit, invalid};
 use crate::error::SceneError;
 use crate::mesh::{MAX_TRIANGLES, Material, Mesh};
 use crate::scene::Scene;
@@ -24,7 +24,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
     };
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let meshes = solids.into_iter().filter(|solid| !solid.corners.is_empty()).map(|solid| {
-        check_limit(solid.corners.len() as u64 / 3)?;
+        check_limit("triangles of the scene", solid.corners.len() as u64 / 3, MAX_TRIANGLES)?;
         let name = if solid.name.is_empty() { stem.clone() } else { solid.name };
         // The limit on triangles keeps the count in 32 bits.
         let triangles = (0..solid.corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
@@ -41,13 +41,6 @@ struct Solid {
     name: String,
     /// Three a triangle.
     corners: Vec<[f64; 3]>,
-}
-
-fn check_limit(needed: u64) -> Result<(), SceneError> {
-    if needed > MAX_TRIANGLES {
-        return Err(SceneError::TooLarge { what: "triangles of the scene".into(), needed, limit: MAX_TRIANGLES });
-    }
-    Ok(())
 }
 
 /// The triangles' bytes, where the file is exactly as long as its header says.
@@ -97,6 +90,9 @@ fn read_text(path: &Path, bytes: &[u8]) -> Result<Vec<Solid>, SceneError> {
         expected = match (expected, word.to_ascii_lowercase().as_str(), solids.last_mut()) {
             (Expected::Solid, "solid", _) => {
                 let name = words.collect::<Vec<_>>().join(" ");
+                // One without a facet is no mesh.
+                solids.pop_if(|solid| solid.corners.is_empty());
+                check_limit("meshes of the scene", solids.len() as u64 + 1, MAX_MESHES)?;
                 solids.push(Solid { name, corners: Vec::new() });
                 Expected::Facet
             }
@@ -111,7 +107,7 @@ fn read_text(path: &Path, bytes: &[u8]) -> Result<Vec<Solid>, SceneError> {
             (Expected::EndLoop, "endloop", _) => Expected::EndFacet,
             (Expected::EndFacet, "endfacet", _) => {
                 count += 1;
-                check_limit(count)?;
+                check_limit("triangles of the scene", count, MAX_TRIANGLES)?;
                 Expected::Facet
             }
             (expected, ..) => return Err(broken(format!("'{word:.40}' where {} is expected", expected.words()))),

@@ -271,6 +271,11 @@ impl DepthComplexity {
         }
     }
 
+    /// From 16 samples on, each 1.5 or 1.33 times as many; beyond 256 twice as many passes each time, with samples of their own.
+    pub(crate) fn rising_quality(&self) -> impl Iterator<Item = Self> {
+        spread::rising_samples(MOST_SAMPLES).map(|(samples, passes)| Self { samples, passes, ..self.clone() })
+    }
+
     /// How a pass samples the light.
     #[must_use]
     pub fn sampling(&self, pass: u32) -> LightSampling {

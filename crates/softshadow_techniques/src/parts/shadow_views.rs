@@ -55,12 +55,8 @@ pub(crate) struct ShadowMaps {
 /// Draws the occluders' depth in every view.
 pub(crate) fn append(plan: &mut Plan, request: &Request<'_>, resolution: u32) -> ShadowMaps {
     let views = views(request, resolution);
-    let shape = Shape::Texture {
-        format: TextureFormat::Depth32Float,
-        size: [resolution; 2],
-        // An array of one layer could not be told from a plain texture.
-        layers: (views.len() as u32).max(2),
-    };
+    let layers = layers(views.len() as u32);
+    let shape = Shape::Texture { format: TextureFormat::Depth32Float, size: [resolution; 2], layers };
     let texture = plan.resource("depth map", shape, Origin::Transient);
     let corners = scene_buffers::append_corners(plan, request.scene);
     for layer in 0..views.len() as u32 {
@@ -79,6 +75,15 @@ pub(crate) fn append(plan: &mut Plan, request: &Request<'_>, resolution: u32) ->
         plan.resources[texture.index()].origin = Origin::Persistent;
     }
     ShadowMaps { views: plan.parameter("shadow views", size_of::<ShadowViews>() as u64), depth: texture }
+}
+
+/// Layers of a map for so many views. On GL wgpu takes a texture of one layer for a plain one, and a square one of six for a cube.
+pub(crate) fn layers(views: u32) -> u32 {
+    match views {
+        0 | 1 => 2,
+        6 => 7,
+        other => other,
+    }
 }
 
 /// Label of the parameter that holds one view.
@@ -154,7 +159,7 @@ pub(crate) fn bounds(request: &Request<'_>) -> Option<(DVec3, DVec3)> {
 }
 
 /// Corners of that box.
-fn hull(request: &Request<'_>) -> Option<[DVec3; 8]> {
+pub(crate) fn hull(request: &Request<'_>) -> Option<[DVec3; 8]> {
     let (low, high) = bounds(request)?;
     Some(std::array::from_fn(|i| {
         let pick = |bit: usize, a: f64, b: f64| if i >> bit & 1 == 0 { a } else { b };

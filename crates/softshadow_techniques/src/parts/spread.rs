@@ -30,6 +30,20 @@ pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<
     found.ok_or_else(|| D::Error::custom(wrong()))
 }
 
+/// Root mean square error in penumbrae of so many stratified samples, in so many passes with samples of their own.
+///
+/// Measured: 0.047 to 0.051 for 16 samples, 0.0171 to 0.0192 for 64, 0.0070 to 0.0082 for 256, on a bunny and on foliage. Only leaves finer
+/// than the strata are worse, up to twice.
+pub(crate) fn expected_error(samples: u32, passes: u32) -> f64 {
+    0.37 * f64::from(samples).powf(-0.7) / f64::from(passes).sqrt()
+}
+
+/// Samples and passes in rising quality, of a technique that takes so many samples at most in a pass.
+pub(crate) fn rising_samples(most: u32) -> impl Iterator<Item = (u32, u32)> {
+    let samples = (4..).flat_map(|power| [1 << power, 3 << (power - 1)]).take_while(move |samples| *samples <= most);
+    samples.map(|samples| (samples, 1)).chain((1..=4).map(move |power| (most, 1 << power)))
+}
+
 /// Checks the square of pixels of a technique that holds at most `most` samples of all sets.
 pub(crate) fn check(technique: &'static str, sampling: &LightSampling, most: u32) -> Result<(), TechniqueError> {
     let fail = |reason: String| Err(TechniqueError::Setting { technique, setting: "tile", reason });

@@ -7,7 +7,8 @@ use softshadow_scene::{LightFrame, LightShape, LocalScene, Material, Mesh, Sampl
 use softshadow_techniques::depth_complexity::OccluderUnit;
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
-    DepthComplexity, OccluderContents, ReceiverSource, Request, SceneContents, Shading, Technique,
+    DepthComplexity, HardShadowMap, OccluderContents, PenumbraMap, ReceiverSource, Request, SceneContents, Shading,
+    Technique,
 };
 
 use crate::requests::{Fixture, POINTS, stage, techniques};
@@ -65,6 +66,11 @@ fn views(request: &Request<'_>) -> u64 {
     }
 }
 
+/// Layers of a light's depth map: never one nor six, which are no arrays on GL.
+fn map_layers(views: u64) -> u64 {
+    if views == 6 { 7 } else { 2 }
+}
+
 /// Bytes by label that a plan must have, and no other.
 fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64> {
     let mut bytes = BTreeMap::new();
@@ -113,7 +119,7 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
     }
     for (n, sub_scene) in sub_scenes.iter().enumerate() {
         // Silhouettes need no corners: they are there for the camera alone.
-        if !technique.wants_occluders() || request.opens_block && camera {
+        if !technique.wants_occluders() || technique.draws() || request.opens_block && camera {
             add(format!("corners {n}"), sub_scene.corners.len() as u64 / 3 * 48);
         }
         if matches!(technique, Technique::RayTraced(_)) {
@@ -147,12 +153,28 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                 add("probe image".into(), 8);
             }
         }
-        Technique::HardShadowMap(settings) => {
-            // The texture is always an array.
+        Technique::HardShadowMap(HardShadowMap { resolution })
+        | Technique::PenumbraMap(PenumbraMap { resolution, .. }) => {
             let views = views(request);
-            add("depth map".into(), u64::from(settings.resolution).pow(2) * 4 * views.max(2));
+            let map = u64::from(*resolution).pow(2) * 4 * map_layers(views);
+            if views > 0 || matches!(technique, Technique::HardShadowMap(_)) {
+                add("depth map".into(), map);
+            }
             (0..views).for_each(|n| add(format!("shadow view {n}"), 64));
             add("shadow views".into(), 6 * 64 + 16);
+            let [_, edges, sides] = hidden_by(request);
+            if matches!(technique, Technique::PenumbraMap(_)) && edges > 0 {
+                add("penumbra map".into(), map);
+                (0..views).for_each(|n| add(format!("map layer {n}"), 16));
+                // Axes, sizes, and 64 corners with a line each.
+                add("penumbra light".into(), 4 * 16 + 64 * 16);
+                add("edges".into(), edges * 32);
+                add("faces at edges".into(), sides * 32);
+                add("edge corners".into(), 16);
+                add("light silhouettes".into(), edges * 32);
+                add("silhouette corners".into(), 16);
+                add("receivers astray".into(), 4);
+            }
         }
         Technique::OcclusionCamera(settings) => {
             let [_, edges, sides] = hidden_by(request);
@@ -161,7 +183,7 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
             add("shadow views".into(), 6 * 64 + 16);
             if edges > 0 {
                 let (texels, views) = (u64::from(settings.resolution).pow(2), views(request));
-                add("depth map".into(), texels * 4 * views.max(2));
+                add("depth map".into(), texels * 4 * map_layers(views));
                 // Eight floats a texel, on either side of the hard shadow's border.
                 add("distortion map".into(), texels / 16 * 2 * 32 * views);
                 add("distance to silhouettes".into(), texels / 16 * 4);
@@ -423,8 +445,8 @@ fn what_passes_to_samples_is_sized_where_triangles_are_semi_opaque() {
             _ => 0,
         };
         assert_eq!(of(true) - of(false) + grown(2), grown(3) + area, "{technique:?}");
-        let knows_opaque_alone = ["hard_shadow_map", "occlusion_camera"].contains(&technique.name());
-        let samples = if knows_opaque_alone { 0 } else { u64::from(technique.samples()) };
+        let maps = ["hard_shadow_map", "penumbra_map", "occlusion_camera"];
+        let samples = if maps.contains(&technique.name()) { 0 } else { u64::from(technique.samples()) };
         assert_eq!(of(true) - of(false), 4 * samples);
     }
 }

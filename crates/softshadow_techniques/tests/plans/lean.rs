@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use softshadow_plan::{Origin, Over, Plan, VertexSource, Work};
-use softshadow_scene::Camera;
+use softshadow_scene::{Camera, Light, LightShape};
 use softshadow_techniques::{
-    DepthComplexity, HardShadowMap, OcclusionCamera, RayTraced, ReceiverSource, Request, Shading, Technique, Wants,
+    DepthComplexity, HardShadowMap, OcclusionCamera, PenumbraMap, RayTraced, ReceiverSource, Request, Shading,
+    Technique, Wants,
 };
 
 use crate::requests::{Fixture, SIZE, stage, techniques};
@@ -89,6 +90,31 @@ fn the_plainest_hard_shadow_has_three_passes() {
     assert!(raster.colors.is_empty() && raster.depth.is_some());
     let within = technique.plan(&Request { light: &fixture.lights[1], ..request });
     assert_eq!(rasters(&within), 6, "a light within the scene looks six ways");
+}
+
+#[test]
+fn a_penumbra_map_has_the_passes_that_its_light_needs() {
+    let fixture = Fixture::new();
+    let request = fixture.request(1, fixture.points());
+    let technique = Technique::PenumbraMap(PenumbraMap::default());
+    let plan = technique.plan(&request);
+    let map = ["no silhouettes", "list silhouettes", "draw penumbra 0", "no strays"];
+    assert_eq!(labels(&plan), [&["place points", "draw depth 0 0"], &map[..], &["look up"]].concat());
+    assert_eq!(outputs(&plan), ["receivers astray", "visibility", "receivers"]);
+    for label in ["sampling", "light samples", "materials", "color", "hierarchy 0", "faces", "face hierarchy"] {
+        assert_eq!(plan.find(label), None, "{label}");
+    }
+    let within = technique.plan(&Request { light: &fixture.lights[1], ..request });
+    assert_eq!(rasters(&within), 12, "a light within the scene looks six ways, with a pair of maps each");
+    // Without size no penumbra, without casters no map.
+    let shape = LightShape::Rectangle { width: 0.0, height: 0.0 };
+    let point = Light::new(shape, request.light.world_from_light()).unwrap();
+    let hard = technique.plan(&Request { light: &point, ..request });
+    assert_eq!(labels(&hard), ["place points", "draw depth 0 0", "look up"]);
+    assert_eq!(hard.find("penumbra map"), None);
+    let empty = technique.plan(&fixture.request(0, fixture.points()));
+    assert_eq!(labels(&empty), ["place points", "see all"]);
+    assert_eq!(empty.find("depth map"), None);
 }
 
 #[test]
@@ -278,7 +304,7 @@ fn occluders_are_for_those_who_ask() {
         for receivers in [fixture.camera(), fixture.points()] {
             let with = fixture.request(1, receivers);
             let without = Request { occluders: None, ..with };
-            let asks = ["depth_complexity", "occlusion_camera"].contains(&technique.name());
+            let asks = ["depth_complexity", "penumbra_map", "occlusion_camera"].contains(&technique.name());
             assert_eq!(technique.wants_occluders(), asks);
             assert_eq!(stage(&technique, &with) != stage(&technique, &without), asks, "{}", technique.name());
         }

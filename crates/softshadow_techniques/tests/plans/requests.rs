@@ -8,9 +8,10 @@ use softshadow_scene::{
     look_at,
 };
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
+use softshadow_techniques::penumbra_map::Ramp;
 use softshadow_techniques::{
-    Attenuation, Block, DepthComplexity, HardShadowMap, OccluderContents, OcclusionCamera, Ramp, RayTraced,
-    ReceiverSource, Request, SceneContents, Shading, Technique, Wants,
+    Attenuation, Block, CameraRamp, DepthComplexity, HardShadowMap, OccluderContents, OcclusionCamera, PenumbraMap,
+    RayTraced, ReceiverSource, Request, SceneContents, Shading, Technique, Wants,
 };
 
 /// Width and height of the grid's images.
@@ -187,7 +188,8 @@ pub(crate) fn techniques() -> Vec<Technique> {
         all.extend([spreads(64, true, 4), spreads(256, false, 5)].map(Technique::DepthComplexity));
     }
     all.extend([16, 300].map(|resolution| Technique::HardShadowMap(HardShadowMap { resolution })));
-    let bent = OcclusionCamera { resolution: 48, steps: 1, bias: 0.0, ramp: Ramp::Bernstein };
+    all.push(Technique::PenumbraMap(PenumbraMap { resolution: 300, ramp: Ramp::Paper }));
+    let bent = OcclusionCamera { resolution: 48, steps: 1, bias: 0.0, ramp: CameraRamp::Bernstein };
     all.push(Technique::OcclusionCamera(bent));
     all
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use softshadow_plan::{Plan, Work};
 use softshadow_scene::SampleSpread;
 use softshadow_techniques::depth_complexity::Evaluation;
-use softshadow_techniques::{Attenuation, DepthComplexity, Request, Shading, Technique};
+use softshadow_techniques::{Attenuation, DepthComplexity, RayTraced, Request, Shading, Technique};
 
 use crate::requests::{Fixture, stage, techniques};
 
@@ -127,7 +127,8 @@ fn a_block_is_sized_by_what_passes_too() {
 #[test]
 fn masks_are_made_of_shares_where_they_are_wanted() {
     let fixture = Fixture::new();
-    for technique in Technique::defaults().into_iter().filter(|technique| !technique.draws()) {
+    let sampled = [Technique::RayTraced(RayTraced::default()), Technique::DepthComplexity(DepthComplexity::default())];
+    for technique in sampled {
         let mut request = fixture.request(GLASS, fixture.points());
         request.wants.picture = Some(Shading::Integrated);
         let masks = |request: &Request<'_>| technique.plan(request).passes.iter().any(|p| p.label == "mask samples");

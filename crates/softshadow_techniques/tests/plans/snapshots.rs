@@ -1,6 +1,9 @@
 //! A handful of plans as text: what a change to a technique changes stands in the diff.
 
-use softshadow_techniques::{DepthComplexity, HardShadowMap, OcclusionCamera, RayTraced, Request, Shading, Technique};
+use softshadow_techniques::penumbra_map::Ramp;
+use softshadow_techniques::{
+    DepthComplexity, HardShadowMap, OcclusionCamera, PenumbraMap, RayTraced, Request, Shading, Technique,
+};
 
 use crate::requests::Fixture;
 
@@ -37,6 +40,15 @@ fn hard_shadow_map_within_the_scene() {
     let mut request = fixture.request_for(1, fixture.points(), 1);
     request.wants.picture = Some(Shading::Modulated);
     let technique = Technique::HardShadowMap(HardShadowMap { resolution: 512 });
+    insta::assert_snapshot!(technique.plan(&request));
+}
+
+#[test]
+fn penumbra_map_of_a_sphere() {
+    let fixture = Fixture::new();
+    let mut request = fixture.request_for(1, fixture.camera(), 2);
+    request.wants.picture = Some(Shading::Modulated);
+    let technique = Technique::PenumbraMap(PenumbraMap { resolution: 512, ramp: Ramp::Light });
     insta::assert_snapshot!(technique.plan(&request));
 }
 

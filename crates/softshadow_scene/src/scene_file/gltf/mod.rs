@@ -17,7 +17,7 @@ use ::gltf::json::validation::Checked;
 
 use self::accessors::Buffers;
 use self::nodes::Placement;
-use super::invalid;
+use super::{check_limit, invalid};
 use crate::error::SceneError;
 use crate::mesh::{MAX_TRIANGLES, Mesh};
 use crate::scene::Scene;
@@ -28,6 +28,9 @@ const MAX_PRIMITIVES: u64 = 1 << 20;
 /// The most vertices after instancing: as many as all triangles of a scene can use.
 const MAX_VERTICES: u64 = 3 * MAX_TRIANGLES;
 
+/// The most objects of the JSON, counted by their brackets: one of three bytes, an empty node, takes 900 bytes when it is read.
+const MAX_OBJECTS: u64 = 1 << 22;
+
 /// Extensions that may be required of a reader and change nothing that is read here.
 const HARMLESS_EXTENSIONS: [&str; 5] =
     ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_punctual", "KHR_xmp"];
@@ -35,6 +38,8 @@ const HARMLESS_EXTENSIONS: [&str; 5] =
 /// One mesh a primitive and node, in the order of the node tree.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
     let container = container::split(bytes).map_err(|reason| invalid(path, reason))?;
+    let objects = container.json.iter().filter(|byte| **byte == b'{').count() as u64;
+    check_limit(&format!("objects in the JSON of {}", path.display()), objects, MAX_OBJECTS)?;
     let root: Root = Root::from_slice(container.json).map_err(|e| invalid(path, format!("JSON: {e}")))?;
     if !(root.asset.version == "2" || root.asset.version.starts_with("2.")) {
         return Err(invalid(path, format!("glTF version {} cannot be read; 2.0 can", root.asset.version)));
@@ -93,7 +98,8 @@ impl Reader<'_> {
                     1 => name.clone(),
                     _ => format!("{name} primitive {primitive_index}"),
                 };
-                self.primitives = check_limit("primitives of the scene", self.primitives + 1, MAX_PRIMITIVES)?;
+                self.primitives += 1;
+                check_limit("primitives of the scene", self.primitives, MAX_PRIMITIVES)?;
                 if let Some(mesh) = self.read_primitive(name, primitive)? {
                     meshes.push(mesh.transformed(&placement.world_from_mesh)?);
                 }
@@ -124,8 +130,10 @@ impl Reader<'_> {
         };
         let corner_count = indices.as_ref().map_or(positions.len(), |indices| indices.len());
         let triangle_count = triangle_count(mode, corner_count).map_err(&broken)?;
-        self.vertices = check_limit("vertices of the scene", self.vertices + positions.len(), MAX_VERTICES)?;
-        self.triangles = check_limit("triangles of the scene", self.triangles + triangle_count, MAX_TRIANGLES)?;
+        self.vertices += positions.len();
+        self.triangles += triangle_count;
+        check_limit("vertices of the scene", self.vertices, MAX_VERTICES)?;
+        check_limit("triangles of the scene", self.triangles, MAX_TRIANGLES)?;
 
         let corners: Vec<u32> = match indices {
             Some(indices) => indices.iter().collect(),
@@ -149,10 +157,6 @@ impl Reader<'_> {
         })?;
         Ok(materials::read(material, &mut self.notes))
     }
-}
-
-fn check_limit(what: &str, needed: u64, limit: u64) -> Result<u64, SceneError> {
-    if needed > limit { Err(SceneError::TooLarge { what: what.into(), needed, limit }) } else { Ok(needed) }
 }
 
 fn triangle_count(mode: Mode, corners: u64) -> Result<u64, String> {

@@ -9,10 +9,8 @@ use super::placement::world_from_mesh;
 use crate::error::SceneError;
 use crate::mesh::{MAX_TRIANGLES, Material, Mesh};
 use crate::scene::Scene;
-use crate::scene_file::{Format, MAX_FILE_BYTES, RegularFile, invalid};
+use crate::scene_file::{Format, MAX_FILE_BYTES, MAX_MESHES, RegularFile, check_limit, invalid};
 
-/// The most meshes: without the limit a small file could ask for endless work that makes no triangle.
-const MAX_MESHES: u64 = 1 << 20;
 /// The most vertices: as many as all triangles of a scene can use.
 const MAX_VERTICES: u64 = 3 * MAX_TRIANGLES;
 
@@ -37,13 +35,6 @@ pub(super) fn read_all(path: &Path, fields: &[MeshFields], meters_per_unit: f64)
         return Err(invalid(path, "it has no meshes with triangles"));
     }
     Ok(files.notes.into_iter().fold(Scene::new(meshes)?, Scene::with_note))
-}
-
-fn check_limit(what: &str, needed: u64, limit: u64) -> Result<(), SceneError> {
-    if needed > limit {
-        return Err(SceneError::TooLarge { what: what.into(), needed, limit });
-    }
-    Ok(())
 }
 
 /// What has been read: a model that stands in many places is read once.

@@ -1,5 +1,8 @@
 //! What a PLY file says it holds.
 
+/// The most elements, and the most properties of one: each is compared with those before it.
+const MAX_NAMES: usize = 1 << 10;
+
 /// How the rows are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Encoding {
@@ -71,6 +74,9 @@ impl Header {
                     if elements.iter().any(|e| e.name == *name) {
                         return Err(broken(&format!("a second element '{name:.40}'")));
                     }
+                    if elements.len() == MAX_NAMES {
+                        return Err(broken(&format!("more than {MAX_NAMES} elements")));
+                    }
                     elements.push(Element { name: (*name).into(), rows, properties: Vec::new() });
                 }
                 (Some((&"property", rest)), _) => {
@@ -78,6 +84,9 @@ impl Header {
                     let property = read_property(rest).map_err(|r| broken(&r))?;
                     if element.properties.iter().any(|p| p.name == property.name) {
                         return Err(broken(&format!("a second property '{:.40}'", property.name)));
+                    }
+                    if element.properties.len() == MAX_NAMES {
+                        return Err(broken(&format!("more than {MAX_NAMES} properties")));
                     }
                     element.properties.push(property);
                 }

@@ -1,29 +1,41 @@
 //! Passes as dispatches, and dispatches as submissions of bounded work.
 
-use softshadow_plan::{Host, Over, Pass, Plan, Work};
+use serde::Serialize;
 
-use softshadow_plan::Timing;
+use crate::engine::Timing;
+use crate::host::Host;
+use crate::pass::{Over, Work};
+use crate::plan::Plan;
 
 /// Steps of one submission over items: below a second on a slow software driver, so that watchdogs stay quiet and a caller can
 /// stop in between. Work of an indirect dispatch is known to the device alone: who plans one bounds it by the size of its blocks.
 const WORK_PER_SUBMISSION: u64 = 1 << 25;
 
 /// A dispatch or another step, with the part of the items that it covers.
-pub(crate) struct Dispatch<'a> {
-    pub(crate) pass: &'a Pass,
-    pub(crate) first: u32,
-    pub(crate) count: u32,
-    pub(crate) slice: usize,
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Dispatch {
+    /// Position of the pass in [`Plan::passes`].
+    pub pass: usize,
+    /// The first item; 0 where the pass is not over items.
+    pub first: u32,
+    /// How many items; 0 where the pass is not over items.
+    pub count: u32,
+    /// Groups that cover the items; 0 where the pass is not over items.
+    pub groups: u32,
+    /// Its number among all dispatches of the plan.
+    pub slice: usize,
 }
 
-/// Passes as dispatches, grouped into submissions of bounded work.
-pub(crate) fn schedule<'a>(plan: &'a Plan, host: &Host, timing: Timing) -> Vec<Vec<Dispatch<'a>>> {
-    let mut submissions: Vec<Vec<Dispatch<'a>>> = vec![Vec::new()];
+/// Passes as dispatches, grouped into submissions of bounded work; at least one, which may be empty.
+#[must_use]
+pub fn schedule(plan: &Plan, host: &Host, timing: Timing) -> Vec<Vec<Dispatch>> {
+    let mut submissions: Vec<Vec<Dispatch>> = vec![Vec::new()];
     let mut work = 0u64;
     let mut slice = 0;
-    for pass in &plan.passes {
+    for (index, pass) in plan.passes.iter().enumerate() {
         let Work::Compute { kernel, over: Over::Items { count, work_per_item } } = &pass.work else {
-            submissions.last_mut().expect("never empty").push(Dispatch { pass, first: 0, count: 0, slice });
+            let dispatch = Dispatch { pass: index, first: 0, count: 0, groups: 0, slice };
+            submissions.last_mut().expect("never empty").push(dispatch);
             slice += 1;
             continue;
         };
@@ -37,7 +49,8 @@ pub(crate) fn schedule<'a>(plan: &'a Plan, host: &Host, timing: Timing) -> Vec<V
         while first < u64::from(*count) {
             let room = (WORK_PER_SUBMISSION.saturating_sub(work) / cost).max(u64::from(group));
             let part = (u64::from(*count) - first).min(most).min(room);
-            let dispatch = Dispatch { pass, first: first as u32, count: part as u32, slice };
+            let groups = part.div_ceil(u64::from(group)) as u32;
+            let dispatch = Dispatch { pass: index, first: first as u32, count: part as u32, groups, slice };
             submissions.last_mut().expect("never empty").push(dispatch);
             slice += 1;
             first += part;
