@@ -60,7 +60,7 @@ impl ForeignDevice {
         Ok(ForeignCall {
             adapter: self.adapter.clone(),
             host: self.host,
-            notes: notes(scene, technique, &prepared.contents.local),
+            notes: notes(scene, lights, technique, &prepared.contents.local),
             lights: lights.to_vec(),
             receivers,
             technique: technique.clone(),

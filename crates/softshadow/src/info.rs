@@ -106,10 +106,8 @@ impl Info {
 /// What a result does not model of its scene and lights, and settings that a call cannot follow where it answers all the same, in words.
 pub(crate) fn notes(scene: &Scene, lights: &[Light], technique: &Technique, local: &LocalScene) -> Vec<String> {
     let semi_opaque = local.opacities.iter().filter(|opacity| **opacity < 1.0).count();
-    let maps = matches!(
-        technique,
-        Technique::HardShadowMap(_) | Technique::PenumbraMap(_) | Technique::OcclusionCamera(_)
-    );
+    let maps =
+        matches!(technique, Technique::HardShadowMap(_) | Technique::PenumbraMap(_) | Technique::OcclusionCamera(_));
     let name = technique.name();
     let taken = (semi_opaque > 0 && maps)
         .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: {name} knows no others"));

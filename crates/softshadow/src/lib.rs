@@ -49,7 +49,8 @@ pub use softshadow_techniques::depth_complexity::{
 };
 pub use softshadow_techniques::penumbra_map::Ramp;
 pub use softshadow_techniques::{
-    Attenuation, CameraRamp, DepthComplexity, HardShadowMap, OcclusionCamera, PenumbraMap, RayTraced, Shading, Technique, TechniqueError,
+    Attenuation, CameraRamp, DepthComplexity, HardShadowMap, OcclusionCamera, PenumbraMap, RayTraced, Shading,
+    Technique, TechniqueError,
 };
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};
 

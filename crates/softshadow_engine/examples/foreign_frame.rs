@@ -12,7 +12,7 @@ use softshadow::{
     procedural,
 };
 use softshadow_engine::WgpuEngine;
-use softshadow_plan::Engine as _;
+use softshadow_plan::{Engine as _, StageReport};
 
 const SIZE: [u32; 2] = [320, 180];
 
@@ -142,7 +142,7 @@ fn frame(renderer: &Renderer) -> Result<Vec<[u8; 4]>, Box<dyn Error>> {
     engine.forget(call.superseded());
     let mut stages = Vec::new();
     let report = engine.run_on_device(&call, &call.uploads(), &results, Timing::Device, &mut |stage| {
-        stages.extend(stage);
+        stages.extend(stage.map(StageReport::into_owned));
         true
     })?;
     call.finish(&stages, report)?;

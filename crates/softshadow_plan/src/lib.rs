@@ -11,8 +11,8 @@ mod pass;
 mod plan;
 mod program;
 mod resource;
-mod work;
 mod schedule;
+mod work;
 
 pub use check::{PlanError, bindings, check};
 pub use engine::{AdapterInfo, DeviceKind, Engine, OnStage, PassTime, RunReport, StageReport, Timing};
@@ -25,5 +25,5 @@ pub use pass::{
 pub use plan::{Plan, SLICE};
 pub use program::{Delivery, DeviceProgram, Program, Stage, Step, Values};
 pub use resource::{Content, ContentKey, Origin, Resource, ResourceId, Shape, TextureFormat};
-pub use work::PassWork;
 pub use schedule::{Dispatch, schedule};
+pub use work::PassWork;

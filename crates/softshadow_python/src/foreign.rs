@@ -1,5 +1,6 @@
 //! Calls for a device that the caller owns: stage by stage a description as JSON, and bytes.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -63,7 +64,11 @@ impl ForeignDevice {
                 color_targets: it.color_targets,
                 color_bytes: it.color_bytes,
             },
-            features: Features { raster: true, float32_blendable: has(FEATURES[0]), float32_drawable: it.backend != "gl" },
+            features: Features {
+                raster: true,
+                float32_blendable: has(FEATURES[0]),
+                float32_drawable: it.backend != "gl",
+            },
         };
         let adapter = AdapterInfo {
             index: 0,
@@ -185,8 +190,12 @@ impl ForeignCall {
         wall_ms: f64,
         submissions: usize,
     ) -> PyResult<String> {
-        let stages: Vec<StageReport> =
-            outputs.into_iter().enumerate().map(|(index, outputs)| StageReport { index, outputs }).collect();
+        let own = |(label, bytes): (String, Vec<u8>)| (label, Cow::Owned(bytes));
+        let report = |(index, outputs): (usize, BTreeMap<String, Vec<u8>>)| StageReport {
+            index,
+            outputs: outputs.into_iter().map(own).collect(),
+        };
+        let stages: Vec<StageReport<'_>> = outputs.into_iter().enumerate().map(report).collect();
         let bytes = self.bytes.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let run = RunReport { wall_ms, submissions, bytes, stages: stages.len(), ..RunReport::default() };
         json(&detached(py, || self.call.finish(&stages, run))?)

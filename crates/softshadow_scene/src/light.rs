@@ -216,11 +216,11 @@ impl Light {
             Err(SceneError::invalid("light", reason))
         };
         let distance = place.center.abs().max_element();
-        if !(distance <= MAX_LOCAL_LENGTH) {
+        if distance.is_nan() || distance > MAX_LOCAL_LENGTH {
             return refused("its distance", distance, "use a sun");
         }
         for size in sizes.iter().map(|size| size * place.length_scale) {
-            if !(size <= MAX_LOCAL_LENGTH) {
+            if size.is_nan() || size > MAX_LOCAL_LENGTH {
                 return refused("its size", size, "make it smaller");
             }
         }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Host, Plan, Values};
-use softshadow_scene::{Light, LightSamples, LocalFrame, SampleSpread, SceneError};
+use softshadow_scene::{Light, LightSamples, LightSampling, SampleSpread, SceneError};
 
 pub use block::{Block, blocks};
 pub use depth_complexity::{Attenuation, DepthComplexity};
@@ -191,17 +191,18 @@ impl Technique {
         }
     }
 
-    /// Checks whether a light's samples can be made.
+    /// Checks whether a request's light can be served.
     ///
     /// # Errors
-    /// [`TechniqueError::Scene`] says why not.
-    pub fn check_light(&self, light: &Light, frame: &LocalFrame) -> Result<(), TechniqueError> {
-        let sampling = match self {
-            Self::RayTraced(settings) => settings.sampling(0),
-            Self::DepthComplexity(settings) => settings.sampling(0),
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => return Ok(()),
-        };
-        Ok(LightSamples::new(light, frame, &sampling).map(drop)?)
+    /// [`TechniqueError`] says why not.
+    pub fn check_light(&self, request: &Request<'_>) -> Result<(), TechniqueError> {
+        let (light, frame) = (request.light, &request.scene.local.frame);
+        let has_samples = |sampling: &LightSampling| Ok(LightSamples::new(light, frame, sampling).map(drop)?);
+        match self {
+            Self::RayTraced(settings) => has_samples(&settings.sampling(0)),
+            Self::DepthComplexity(settings) => has_samples(&settings.sampling(0)),
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => Ok(()),
+        }
     }
 
     /// Whether pixels are averaged with their neighbours.

@@ -34,8 +34,8 @@
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{
-    Blend, ColorTarget, Compare, Count, DepthTarget, Host, Kernel, Origin, Over, Plan, Raster, RasterKernel, ResourceId,
-    Shape, TextureFormat, Values, VertexSource,
+    Blend, ColorTarget, Compare, Count, DepthTarget, Host, Kernel, Origin, Over, Plan, Raster, RasterKernel,
+    ResourceId, Shape, TextureFormat, Values, VertexSource,
 };
 use softshadow_scene::{Light, LightSampling, LightShape, SamplePattern};
 

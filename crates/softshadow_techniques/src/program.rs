@@ -123,8 +123,10 @@ impl VisibilityProgram<'_> {
         if let ReceiverSource::Points(points) = self.receivers {
             points.check_local(&self.scene.local.frame)?;
         }
-        let frame = &self.scene.local.frame;
-        self.lights.iter().try_for_each(|light| self.technique.check_light(light, frame))
+        // What a light can be refused for shows in its first stage: the others differ in numbers only.
+        let per_light = self.technique.passes() as usize * self.technique.stages() as usize;
+        let mut firsts = (0..self.lights.len()).filter_map(|light| self.task(light * per_light));
+        firsts.try_for_each(|task| self.technique.check_light(&self.request(task, &[])))
     }
 }
 
@@ -132,7 +134,7 @@ impl Program for VisibilityProgram<'_> {
     fn step(&self, index: usize, decision: &[u32]) -> Step {
         match self.task(index).map(|task| self.stage(task, decision)) {
             Some(Ok((plan, values))) => Step::run(plan, values),
-            // `check` has made every light's samples, and nothing else can fail.
+            // `check` has tried every light, and nothing else can fail.
             Some(Err(_)) | None => Step::Done,
         }
     }

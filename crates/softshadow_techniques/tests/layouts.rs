@@ -15,7 +15,7 @@ use softshadow_techniques::depth_complexity::blended::{Largest, Packing, TARGETS
 use softshadow_techniques::depth_complexity::{
     AttenuationScale, ClusterRange, CoverSettings, FoldSettings, FrameRecord, SampleBins, TouchingRange,
 };
-use softshadow_techniques::occlusion_camera::{CameraCounts, CameraLight, MapLayer};
+use softshadow_techniques::occlusion_camera::{self, CameraCounts, CameraLight};
 use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
 use softshadow_techniques::parts::light_silhouettes::{EdgeCorners, LIGHT_SILHOUETTE_BYTES};
@@ -62,7 +62,7 @@ const PAIRS: &[Pair] = &[
     ("FrameRecord", size_of::<FrameRecord>(), "depth_complexity/frame.wgsl", "LightFrame"),
     ("ClusterRange", size_of::<ClusterRange>(), "depth_complexity/clusters.wgsl", "ClusterRange"),
     ("CameraLight", size_of::<CameraLight>(), "occlusion_camera/camera.wgsl", "CameraLight"),
-    ("MapLayer", size_of::<MapLayer>(), "occlusion_camera/draw_distortion.wgsl", "MapLayer"),
+    ("MapLayer", size_of::<occlusion_camera::MapLayer>(), "occlusion_camera/draw_distortion.wgsl", "MapLayer"),
     ("CameraCounts", size_of::<CameraCounts>(), "occlusion_camera/look_up.wgsl", "CameraCounts"),
     ("EdgeCorners", size_of::<EdgeCorners>(), "light_silhouettes/list.wgsl", "EdgeCorners"),
     ("AttenuationScale", size_of::<AttenuationScale>(), "depth_complexity/spread_reference.wgsl", "AttenuationScale"),

@@ -4,6 +4,8 @@
 //! `tests/fuzz/corpus/` has inputs to begin with. `make fuzz` gives every target a minute and another seed each time, prints the figures,
 //! and leaves inputs with new outcomes and findings in `target/fuzz/`.
 
+#![expect(clippy::print_stdout, reason = "the measured figures, shown by --nocapture")]
+
 mod files;
 mod growth;
 mod harness;

@@ -4,7 +4,9 @@ use softshadow::{
     Context, DeviceChoice, DeviceKind, Options, Ramp, Receivers, SampleSpread, Visibility, adapters, visibility,
 };
 
-use crate::common::{Random, depth_complexity, hard_shadow_map, penumbra_map, ray_traced, shipped, surface_points};
+use crate::common::{
+    Random, depth_complexity, hard_shadow_map, occlusion_camera, penumbra_map, ray_traced, shipped, surface_points,
+};
 use crate::spreads::both;
 
 /// Set where Mesa's drivers are installed, so that a missing adapter fails instead of being skipped.
@@ -72,6 +74,17 @@ fn maps_of_six_faces_are_the_same_on_gl() {
         // Texels next to outlines may be drawn a rounding apart.
         assert!(different * 1000 < all, "{}: {different} of {all}", technique.name());
     }
+}
+
+#[test]
+fn the_occlusion_camera_is_refused_on_gl() {
+    let Some([_, gl]) = vulkan_and_gl("the_occlusion_camera_is_refused_on_gl") else { return };
+    let (scene, light, camera) = shipped("toruses", [16, 12]);
+    let technique = occlusion_camera(64);
+    let receivers = Receivers::Camera(camera);
+    let error = visibility(&gl, &scene, &[light], &receivers, &technique, &Options::default(), &mut |_, _| true);
+    let words = error.unwrap_err().to_string();
+    assert!(words.contains("rgba32float targets, which this device does not do"), "{words}");
 }
 
 #[test]

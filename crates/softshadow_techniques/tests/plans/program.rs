@@ -92,6 +92,18 @@ fn every_stage_has_what_hides_its_light() {
 }
 
 #[test]
+fn the_occlusion_camera_needs_float32_targets() {
+    let fixture = Fixture::new();
+    let technique = Technique::OcclusionCamera(OcclusionCamera::default());
+    let mut program = program(&fixture, &technique);
+    assert_eq!(program.check(), Ok(()));
+    program.host.features.float32_drawable = false;
+    let words = program.check().unwrap_err().to_string();
+    assert!(words.starts_with("occlusion_camera device: draws into rgba32float targets"), "{words}");
+    assert!(words.contains("penumbra_map"), "{words}");
+}
+
+#[test]
 fn a_program_that_cannot_run_says_so_before_it_starts() {
     let fixture = Fixture::new();
     let samples = format!("ray_traced samples: must lie between 1 and {MAX_SAMPLES}, got ");
