@@ -118,6 +118,8 @@ CALLS = {
     "DiscLight": (ss.DiscLight, {"radius": 1.0, **POSED}),
     "HardShadowMap": (ss.HardShadowMap, vars(ss.HardShadowMap())),
     "Mesh": (ss.Mesh, vars(ss.Mesh(vertices=CARD, faces=SQUARE))),
+    "OcclusionCamera": (ss.OcclusionCamera, vars(ss.OcclusionCamera())),
+    "PenumbraMap": (ss.PenumbraMap, vars(ss.PenumbraMap())),
     "PolygonLight": (ss.PolygonLight, {"outline": [[0, 0], [1, 0], [0, 1]], **POSED}),
     "RayTraced": (ss.RayTraced, vars(RAYS)),
     "RectLight": (ss.RectLight, {"width": 1, "height": 1, "texture": np.ones((2, 2, 3)), **POSED}),

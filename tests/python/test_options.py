@@ -202,6 +202,11 @@ for kind, common in ((ss.RayTraced, {}), (ss.DepthComplexity, {"exact_area": Fal
     of_technique(kind, "spread", "decorrelated", **common)
     of_technique(kind, "tile", 2, spread="interleaved", **common)
 of_technique(ss.HardShadowMap, "resolution", 16)
+of_technique(ss.PenumbraMap, "resolution", 16)
+of_technique(ss.PenumbraMap, "ramp", "linear")
+of_technique(ss.OcclusionCamera, "resolution", 16)
+of_technique(ss.OcclusionCamera, "steps", 1)
+of_technique(ss.OcclusionCamera, "ramp", "bernstein")
 of_technique(ss.DepthComplexity, "exact_area", False, SCENE)
 of_technique(ss.DepthComplexity, "silhouettes", "standard")
 of_technique(ss.DepthComplexity, "coverage", "table", exact_area=False)
@@ -218,7 +223,7 @@ for name, other in {"initial_counts": "z_fail", "counters": "float", "base": 256
 entry("RayTraced.probes", plan_of(ss.RayTraced), plan_of(ss.RayTraced, probes=8))
 entry("DepthComplexity.evaluation", plan_of(), plan_of(evaluation="blended"))
 entry("DepthComplexity.unit", plan_of(unit="edges"), plan_of(unit="triangles"))
-for kind in (ss.RayTraced, ss.HardShadowMap, ss.DepthComplexity):
+for kind in (ss.RayTraced, ss.HardShadowMap, ss.PenumbraMap, ss.OcclusionCamera, ss.DepthComplexity):
     assert not inspect.signature(kind.to_json).parameters.keys() - {"self"}
 
 

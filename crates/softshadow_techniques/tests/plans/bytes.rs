@@ -117,9 +117,11 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
         add("points".into(), count * 32);
         add("point range".into(), 4);
     }
+    // The occlusion camera draws nothing where nothing has a silhouette.
+    let is_bare = matches!(technique, Technique::OcclusionCamera(_)) && hidden_by(request)[1] == 0;
     for (n, sub_scene) in sub_scenes.iter().enumerate() {
         // Silhouettes need no corners: they are there for the camera alone.
-        if !technique.wants_occluders() || technique.draws() || request.opens_block && camera {
+        if !technique.wants_occluders() || technique.draws() && !is_bare || request.opens_block && camera {
             add(format!("corners {n}"), sub_scene.corners.len() as u64 / 3 * 48);
         }
         if matches!(technique, Technique::RayTraced(_)) {
@@ -197,11 +199,6 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                 add("light silhouettes".into(), edges * 32);
                 add("silhouette corners".into(), 16);
                 add("camera counts".into(), 16);
-                if !(request.opens_block && camera) {
-                    for (n, sub_scene) in sub_scenes.iter().enumerate() {
-                        add(format!("corners {n}"), sub_scene.corners.len() as u64 / 3 * 48);
-                    }
-                }
             }
         }
         Technique::DepthComplexity(settings) => {

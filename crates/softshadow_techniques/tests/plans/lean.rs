@@ -142,7 +142,7 @@ fn the_occlusion_camera_draws_maps_where_there_are_casters_alone() {
     for label in ["depth map", "distortion map", "camera counts", "light silhouettes"] {
         assert!(plan.find(label).is_some() && nothing.find(label).is_none(), "{label}");
     }
-    // Two targets of four floats are all that GL promises of a sample.
+    // Two targets of four floats are all that core WebGPU promises of a pixel.
     for pass in &plan.passes {
         if let Work::Raster(raster) = &pass.work {
             let bytes =
