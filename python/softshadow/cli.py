@@ -37,7 +37,7 @@ lights       rect:width=1,height=1,position=1.5/3.5/1,target=0/0.3/0   disc:radi
              sun:azimuth=120,elevation=40,diameter=0.53,up=y           each with radiance=1/1/1
 cameras      eye=2/2/3,target=0/0.4/0,fov=40,up=0/1/0
 techniques   ray-traced:samples=64,seed=1      hard-shadow-map:resolution=2048
-             penumbra-map:resolution=1024,ramp=light
+             penumbra-map:resolution=1024,ramp=light       occlusion-camera:steps=3,bias=0.25,ramp=outline
              depth-complexity:samples=64,exact_area=true,spread=interleaved,tile=4
              depth-complexity:evaluation=blended,counters=words   depth-complexity:unit=auto
 

@@ -206,6 +206,8 @@ of_technique(ss.PenumbraMap, "resolution", 16)
 of_technique(ss.PenumbraMap, "ramp", "linear")
 of_technique(ss.OcclusionCamera, "resolution", 16)
 of_technique(ss.OcclusionCamera, "steps", 1)
+# A sheet between two others.
+of_technique(ss.OcclusionCamera, "bias", 1.0, GLASS)
 of_technique(ss.OcclusionCamera, "ramp", "bernstein")
 of_technique(ss.DepthComplexity, "exact_area", False, SCENE)
 of_technique(ss.DepthComplexity, "silhouettes", "standard")
