@@ -143,6 +143,8 @@ def test_triangles_say_what_rays_say():
     assert error("foliage", "hard") > 3 * error("foliage", "triangles")
 
 
+@shows("penumbrae")
+@shows("concavities")
 def test_the_umbra_of_a_penumbra_map_never_shrinks():
     def dark(panel: str) -> int:
         return int((values("penumbrae", panel) < 0.002).sum())
@@ -156,6 +158,7 @@ def test_the_umbra_of_a_penumbra_map_never_shrinks():
     assert (errors > 0.1).mean() < 0.01
 
 
+@shows("guests")
 def test_pygfx_shows_soft_shadows_that_are_darker_and_nowhere_brighter():
     if "guests" not in gallery.EXHIBITS:
         pytest.skip("pygfx is not installed: the exhibit 'guests' is not tested")
