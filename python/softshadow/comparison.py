@@ -32,7 +32,7 @@ class Comparison:
     name : str
         What a report calls it.
     triangles : int
-        Of the scene.
+        How many the scene has.
     light : dict
         Its `shape`, and its `extent`: the side of the square of the same area, or a diameter, of suns in degrees.
     size : [width, height] or None
@@ -47,7 +47,7 @@ class Comparison:
         What made the reference.
     reference_standard_error : float or None
         Root mean square of the reference's own standard error over the penumbra: errors below it say nothing.
-    reference_values : float32, (H, W) or (points,), with a textured light a last axis of 3
+    reference_values : (H, W) or (points,) float32, with a textured light a last axis of 3
         The reference; NaN where the camera sees nothing.
     values : tuple of float32, like `reference_values`
         The visibility of each technique.
@@ -76,6 +76,11 @@ class Comparison:
         """Writes a report into a folder: ``index.html``, which stands alone, ``report.json`` and the front as PNG.
 
         :class:`softshadow.report.Report` writes one of several comparisons, with other tracers and published ratios.
+
+        Parameters
+        ----------
+        folder : path
+            Made where there is none; files of these names in it are replaced.
 
         Raises
         ------

@@ -99,6 +99,9 @@ PICTURE = ss.render(SCENE, LIGHT, camera=CAMERA, technique=RAYS, **NATIVE)
 POSED = {"world_from_light": POSE, "radiance": (1, 1, 1), "name": "key"}
 CALL = {"camera": CAMERA, "memory_limit": None, "progress": None, **NATIVE}
 
+NO_GOAL = {"max_error": None, "max_ms": None, "error_norm": "rmse", "confidence": None}
+COMPARED = ss.compare(SCENE, LIGHT, camera=CAMERA, techniques=[RAYS], reference=RAYS, repeats=1, **NATIVE)
+
 # A call and good arguments for all of its parameters.
 CALLS = {
     "Camera": (ss.Camera, {"world_from_camera": POSE, "size": (3, 2), "fov_y_deg": 40.0, "K": None, "frame": "opengl"}),
@@ -139,9 +142,11 @@ CALLS = {
     "compare": (
         ss.compare,
         {"scene": SCENE, "light": LIGHT, "points": None, "normals": None, "techniques": [RAYS], "reference": RAYS}
-        | {"repeats": 1, "camera": CAMERA, "progress": None, **NATIVE},
+        | {"name": "a", "repeats": 1, "camera": CAMERA, "progress": None, **NATIVE},
     ),
-    "doctor": (ss.doctor, {}),
+    "Comparison.save": (COMPARED.save, {"folder": "report"}),
+    "doctor": (ss.doctor, {"measure": False}),
+    "from_trimesh": (ss.from_trimesh, {"source": trimesh.creation.box()}),
     "light_points": (
         ss.light_points,
         {"light": LIGHT, "samples": 4, "receivers": CARD, "scene": SCENE, "pattern": "stratified", "seed": 1}
@@ -159,12 +164,12 @@ CALLS = {
     "visibility": (
         ss.visibility,
         {"scene": SCENE, "lights": LIGHT, "points": None, "normals": None, "technique": RAYS, **CALL}
-        | {"standard_error": True, "receivers": True, "sample_masks": True},
+        | {"standard_error": True, "receivers": True, "sample_masks": True, **NO_GOAL},
     ),
     "visibility, points": (
         ss.visibility,
         {"scene": SCENE, "lights": [LIGHT], "points": CARD, "normals": FLOOR + 1.0, "technique": RAYS, **CALL}
-        | {"camera": None, "standard_error": True, "receivers": True, "sample_masks": True},
+        | {"camera": None, "standard_error": True, "receivers": True, "sample_masks": True, **NO_GOAL},
     ),
     "Visibility.save": (RESULT.save, {"path": "seen.png"}),
     "Picture.save": (PICTURE.save, {"path": "seen.exr"}),

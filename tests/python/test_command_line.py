@@ -203,6 +203,14 @@ CHANGES = {
 }
 GALLERY_CHANGES = {"exhibits": ["glass"]} | {name: CHANGES[name] for name in ("-o", "--size", "--device", "--json")}
 MADE = [("render", CHANGES), ("visibility", CHANGES), ("gallery", GALLERY_CHANGES)]
+# Options that change which technique is chosen, tested in test_choice.py.
+GOALS = {"--max-error", "--max-ms", "--error-norm"}
+COMPARE_CHANGES = {name: CHANGES[name] for name in ("scene", "--light", "--camera", "--size", "--device", "--json")} | {
+    "-o": ["-o", "other"],
+    "--technique": ["--technique", "depth-complexity:samples=4"],
+    "--reference": ["--reference", "ray-traced:samples=9"],
+    "--repeats": ["--repeats", "2"],
+}
 
 
 def names_of(command: str) -> set[str]:
@@ -214,10 +222,41 @@ def names_of(command: str) -> set[str]:
 
 def test_every_option_of_every_command_is_known_here():
     (commands,) = (action for action in cli._parser()._actions if isinstance(action.choices, dict))
-    assert set(commands.choices) == {command for command, _ in MADE} | {"doctor"}
+    assert set(commands.choices) == {command for command, _ in MADE} | {"compare", "doctor"}
     for command, changes in MADE:
-        assert names_of(command) == set(changes)
-    assert names_of("doctor") == {"--json"}
+        assert names_of(command) == set(changes) | (GOALS if command == "visibility" else set())
+    # Lines of other tracers are read by tests of reports.
+    assert names_of("compare") == set(COMPARE_CHANGES) | {"--lines"}
+    assert names_of("doctor") == {"--json", "--quick"}
+
+
+def timeless(value: object, key: str = "") -> object:
+    """Numbers of a report without its times: of those it keeps how many there are."""
+    if isinstance(value, dict):
+        return {name: timeless(inner, name) for name, inner in value.items() if name not in ("summary", "judgement")}
+    if isinstance(value, list):
+        return len(value) if "ms" in key else [timeless(inner, key) for inner in value]
+    return 0 if "ms" in key else value
+
+
+@pytest.mark.parametrize("option", COMPARE_CHANGES)
+def test_every_option_of_compare_changes_something(option, tmp_path, monkeypatch, capsys):
+    base = {"positional": ["hall"], "-o": ["-o", "report"], "--size": ["--size", "24x16"]}
+    base |= {"--technique": ["--technique", "ray-traced:samples=4"], "--repeats": ["--repeats", "1"]}
+    base |= {"--reference": ["--reference", "ray-traced:samples=16"], "--device": ["--device", "software"]}
+
+    def made(folder: str, words: dict[str, list[str]]) -> tuple[bool, list[str], object]:
+        (tmp_path / folder).mkdir()
+        monkeypatch.chdir(tmp_path / folder)
+        assert main(["compare", *chain(*words.values())]) == 0
+        (page,) = Path().rglob("report.json")
+        files = sorted(str(path) for path in Path().rglob("*.*") if path.is_file())
+        return bool(capsys.readouterr().out), files, timeless(json.loads(page.read_text()))
+
+    plain, again = made("plain", base), made("again", base)
+    assert plain == again, "nothing changes by itself"
+    changed = base | {option if option.startswith("-") else "positional": COMPARE_CHANGES[option]}
+    assert made("changed", changed) != plain
 
 
 @pytest.mark.parametrize(("command", "option"), [(command, option) for command, known in MADE for option in known])

@@ -20,18 +20,22 @@ UNITS = {
     "unit disc": "parameters",
     "degrees": "azimuth elevation diameter_deg fov_y_deg",
     "pixel|texels|square": "size K resolution tile",
+    "milliseconds": "max_ms",
+    "error": "max_error",
+    "bounds": "confidence",
     "linear": "radiance base_color background linear",
     "stops": "exposure",
     "bytes": "memory_limit",
-    "share|opacity": "opacity values standard_error",
+    "share|opacity|visibility": "opacity values standard_error",
     "metres": "meters_per_unit",
     "pose|rotation": "world_from_camera world_from_light transform",
     "penumbra": "reference_standard_error",
+    "NaN": "reference_values",
 }
 # Numbers and arrays that have no unit: directions, counts, indices, ratios.
 UNITLESS = {"up", "normals", "faces", "samples", "seed", "passes", "probes", "base", "batches", "repeats"}
 UNITLESS |= {"roughness", "specular", "texture", "triangles", "srgb", "valid", "visible_samples", "device"}
-UNITLESS |= {"exact_area", "at_infinity"}
+UNITLESS |= {"exact_area", "at_infinity", "channels", "steps", "bias"}
 # What raises nothing of its own, though it can be called.
 SAFE = {"doctor", "scenes.names", "Comparison.to_json", "Diagnosis.to_dict", "Technique.to_json"}
 

@@ -7,9 +7,11 @@ import sys
 import tomllib
 from pathlib import Path
 
+from softshadow.extras import EXTRAS
+
 ROOT = Path(__file__).resolve().parents[2]
 # Names of modules where they differ from those of packages, and what comes with another package.
-PACKAGE_OF = {"PIL": "pillow", "drjit": "mitsuba"}
+PACKAGE_OF = {"PIL": "pillow", "drjit": "mitsuba", "rendercanvas": "pygfx"}
 
 
 def imported(source: str) -> set[str]:
@@ -32,7 +34,9 @@ def package(requirement: str) -> str:
 
 
 def used() -> set[str]:
-    return set().union(*(imported(path.read_text()) for path in (ROOT / "python").rglob("*.py")))
+    """What is imported by name, or when it is needed."""
+    sources = (path.read_text() for path in (ROOT / "python").rglob("*.py"))
+    return set().union(EXTRAS.values(), *map(imported, sources))
 
 
 def test_every_import_has_an_extra():

@@ -111,6 +111,15 @@ of_visibility("memory_limit", with_option(memory_limit=30_000), lambda result: r
 of_visibility("standard_error", with_option(standard_error=False), lambda result: result.standard_error)
 of_visibility("receivers", with_option(receivers=True), lambda result: result.positions)
 of_visibility("sample_masks", with_option(sample_masks=True), lambda result: result.visible_samples)
+GOAL: dict[str, Any] = {"technique": None, "max_error": 0.05}
+of_visibility("max_error", with_option(**GOAL), lambda result: result.info["choice"])
+of_visibility("max_ms", with_option(technique=None, max_ms=1e6), lambda result: result.info["choice"])
+for name, other in (("error_norm", "p99"), ("confidence", 0.8)):
+    entry(
+        f"visibility({name})",
+        lambda: with_option(**GOAL)().info["choice"]["goal"],
+        lambda name=name, other=other: with_option(**GOAL, **{name: other})().info["choice"]["goal"],
+    )
 entry(
     "visibility(normals)",
     lambda: visibility(SCENE, LIGHT, points=POINTS).values,
@@ -173,6 +182,7 @@ of_compare("points", points=POINTS[:7])
 of_compare("normals", normals=np.tile([0.0, 0.2, 1], (40, 1)))
 of_compare("techniques", techniques=[ss.HardShadowMap()])
 of_compare("reference", reference=replace(MANY, seed=1))
+entry("compare(name)", lambda: comparison().name, lambda: comparison(name="other").name)
 of_compare("device", lambda result: result.reference["adapter"], device="native")
 
 
@@ -203,10 +213,10 @@ for kind, common in ((ss.RayTraced, {}), (ss.DepthComplexity, {"exact_area": Fal
     of_technique(kind, "tile", 2, spread="interleaved", **common)
 of_technique(ss.HardShadowMap, "resolution", 16)
 of_technique(ss.PenumbraMap, "resolution", 16)
-of_technique(ss.PenumbraMap, "ramp", "linear")
+of_technique(ss.PenumbraMap, "ramp", "paper")
 of_technique(ss.OcclusionCamera, "resolution", 16)
-of_technique(ss.OcclusionCamera, "steps", 1)
-# A sheet between two others.
+# Several silhouettes before a receiver, and a sheet between two others.
+of_technique(ss.OcclusionCamera, "steps", 1, GLASS)
 of_technique(ss.OcclusionCamera, "bias", 1.0, GLASS)
 of_technique(ss.OcclusionCamera, "ramp", "bernstein")
 of_technique(ss.DepthComplexity, "exact_area", False, SCENE)
@@ -537,6 +547,28 @@ of_result(
     lambda: ss.light_points(ss.SunLight(0, 45), 16, scene=SCENE, seed=1),
     *("positions", "parameters", "at_infinity"),
 )
+
+
+of_result(ss.Comparison, comparison, lambda: comparison(name="other"), "name")
+of_result(ss.Comparison, comparison, lambda: comparison(scene=BODY), "triangles", "values", "reference_values")
+of_result(ss.Comparison, comparison, lambda: comparison(light=light_above(2.0)), "light")
+of_result(ss.Comparison, comparison, lambda: comparison(points=None, camera=CAMERA), "size")
+of_result(
+    ss.Comparison,
+    comparison,
+    lambda: comparison(light=replace(light_above(), texture=np.ones((2, 2, 3)))),
+    "channels",
+)
+entry("Diagnosis.trials", lambda: ss.doctor().trials, lambda: ss.doctor(measure=True).trials)
+entry("doctor(measure)", lambda: len(ss.doctor().trials), lambda: len(ss.doctor(measure=True).trials))
+entry("Comparison.save(folder)", lambda: written("one"), lambda: written("other"))
+
+
+def written(folder: str) -> list[str]:
+    """What a comparison leaves where it is told to."""
+    with TemporaryDirectory() as place:
+        comparison().save(Path(place) / folder)
+        return sorted(str(path.relative_to(place)) for path in Path(place).rglob("*.*"))
 
 
 # What a machine has depends on the machine: tests of `doctor` change it.

@@ -175,7 +175,7 @@ impl OcclusionCamera {
     pub(crate) fn check_call(&self, lights: &[Light], host: &Host) -> Result<(), TechniqueError> {
         if !host.features.float32_drawable {
             let reason = "draws into rgba32float targets, which this device does not do (GL does not); use a Vulkan, Metal or D3D12 \
-                          device, or penumbra_map, or ray_traced";
+                          device, or trace rays";
             return Err(TechniqueError::Setting { technique: NAME, setting: "device", reason: reason.into() });
         }
         let corners = lights.iter().map(|light| match light.shape() {

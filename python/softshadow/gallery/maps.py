@@ -25,7 +25,7 @@ def growing(studio: Studio) -> Exhibit:
     """The umbra shrinks as the light grows (figure 10)."""
     panels = []
     notes = []
-    for radius in (0.05, 0.15, 0.3):
+    for radius in (0.1, 0.3, 0.6):
         view = _props(studio, radius)
         truth = studio.reference(view)
         bent = studio.panel(

@@ -80,11 +80,14 @@ fn serves(technique: &Technique, scene: &SceneContents, receivers: ReceiverSourc
     technique.check_call(receivers, &lights()[..1], &engine.host()).is_ok() && technique.check_scene(scene).is_ok()
 }
 
-/// The lights without the one that triangles touch, where it is refused: over glass, and for wedges.
+/// The lights without the one that triangles touch, where it is refused: over glass, for wedges, and by the occlusion camera.
 fn served(technique: &Technique, scene: &SceneContents, lights: &[Light]) -> Vec<Light> {
-    let is_blended =
-        matches!(technique, Technique::DepthComplexity(settings) if settings.evaluation == Evaluation::Blended);
-    let is_refused = |index: usize| index == 2 && (scene.opacity.is_some() || is_blended);
+    let refuses = match technique {
+        Technique::DepthComplexity(settings) => settings.evaluation == Evaluation::Blended,
+        Technique::OcclusionCamera(_) => true,
+        _ => false,
+    };
+    let is_refused = |index: usize| index == 2 && (scene.opacity.is_some() || refuses);
     lights.iter().enumerate().filter(|(index, _)| !is_refused(*index)).map(|(_, light)| light.clone()).collect()
 }
 
@@ -151,8 +154,8 @@ fn the_device_accepts_every_plan_and_outputs_have_exact_sizes() {
             }
         }
     }
-    // Of eighteen, two average pixels, and three draw on images; these three and the two that fold triangles know no semi-opaque sheets.
-    assert_eq!(runs, (18 * 3 - 5 + 13 * 3 - 2) * 3 * 2);
+    // Of nineteen, two average pixels, and three draw on images; these three and the two that fold triangles know no semi-opaque sheets.
+    assert_eq!(runs, (19 * 3 - 5 + 14 * 3 - 2) * 3 * 2);
 }
 
 /// Outputs of every stage against what is asked for: values with a light's last pass, receivers and pictures once a block.
