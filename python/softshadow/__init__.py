@@ -35,7 +35,7 @@ from .lights import DiscLight, Light, PolygonLight, RectLight, SphereLight, SunL
 from .picture import Picture, render
 from .scene import Mesh, Scene
 from .scene_file import SceneFile, load
-from .techniques import DepthComplexity, HardShadowMap, RayTraced, Technique
+from .techniques import DepthComplexity, HardShadowMap, OcclusionLayers, RayTraced, Technique
 from .visibility import Visibility, visibility
 
 __all__ = [
@@ -53,6 +53,7 @@ __all__ = [
     "MeasureError",
     "Mesh",
     "NoAdapterError",
+    "OcclusionLayers",
     "OutputError",
     "Picture",
     "PolygonLight",

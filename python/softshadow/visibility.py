@@ -160,7 +160,7 @@ def visibility(
     normals : (n, 3) float, optional
         For each point, of any length but zero: light from below the horizon is then not visible. A flat light
         is never visible from behind.
-    technique : RayTraced, DepthComplexity or HardShadowMap
+    technique : RayTraced, DepthComplexity, OcclusionLayers or HardShadowMap
         How it is computed.
     device : {"auto", "gpu", "native", "software"} or int
         ``"auto"`` takes a graphics card, else the processor without any driver (``"native"``), and a software driver

@@ -93,8 +93,9 @@ impl Info {
 /// What a result does not model of its scene, and settings that a call cannot follow where it answers all the same, in words.
 pub(crate) fn notes(scene: &Scene, technique: &Technique, local: &LocalScene) -> Vec<String> {
     let semi_opaque = local.opacities.iter().filter(|opacity| **opacity < 1.0).count();
-    let taken = (semi_opaque > 0 && matches!(technique, Technique::HardShadowMap(_)))
-        .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: hard_shadow_map knows no others"));
+    let knows_opaque_alone = matches!(technique, Technique::HardShadowMap(_) | Technique::OcclusionLayers(_));
+    let taken = (semi_opaque > 0 && knows_opaque_alone)
+        .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: {} knows no others", technique.name()));
     let by_samples = match technique {
         Technique::DepthComplexity(settings) if settings.exact_area && settings.evaluation == Evaluation::Blended => {
             Some("exact_area: evaluation 'blended' answers by samples alone".into())

@@ -41,8 +41,9 @@ pub use softshadow_scene::{
 pub use softshadow_techniques::depth_complexity::{
     Counters, Coverage, Evaluation, InitialCounts, OccluderUnit, Silhouettes,
 };
+pub use softshadow_techniques::occlusion_layers::{Combine, Projection};
 pub use softshadow_techniques::{
-    Attenuation, DepthComplexity, HardShadowMap, RayTraced, Shading, Technique, TechniqueError,
+    Attenuation, DepthComplexity, HardShadowMap, OcclusionLayers, RayTraced, Shading, Technique, TechniqueError,
 };
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};
 

@@ -5,6 +5,7 @@
 mod block;
 pub mod depth_complexity;
 pub mod hard_shadow_map;
+pub mod occlusion_layers;
 pub mod parts;
 mod program;
 pub mod ray_traced;
@@ -19,6 +20,7 @@ use softshadow_scene::{Light, SampleSpread, SceneError};
 pub use block::{Block, blocks};
 pub use depth_complexity::{Attenuation, DepthComplexity};
 pub use hard_shadow_map::HardShadowMap;
+pub use occlusion_layers::OcclusionLayers;
 pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
 pub use parts::shading::Shading;
@@ -36,6 +38,8 @@ pub enum Technique {
     RayTraced(RayTraced),
     /// One depth map from the light's centre: what softness is compared with.
     HardShadowMap(HardShadowMap),
+    /// Slices of the scene, prefiltered: plausible, at a cost that hardly depends on scene and light.
+    OcclusionLayers(OcclusionLayers),
     /// Silhouette edges and counters: as accurate as rays to the same samples.
     DepthComplexity(DepthComplexity),
 }
@@ -66,6 +70,7 @@ impl Technique {
         vec![
             Self::RayTraced(RayTraced::default()),
             Self::HardShadowMap(HardShadowMap::default()),
+            Self::OcclusionLayers(OcclusionLayers::default()),
             Self::DepthComplexity(DepthComplexity::default()),
         ]
     }
@@ -76,6 +81,7 @@ impl Technique {
         match self {
             Self::RayTraced(_) => "ray_traced",
             Self::HardShadowMap(_) => "hard_shadow_map",
+            Self::OcclusionLayers(_) => "occlusion_layers",
             Self::DepthComplexity(_) => "depth_complexity",
         }
     }
@@ -94,6 +100,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.check(),
             Self::HardShadowMap(settings) => settings.check(),
+            Self::OcclusionLayers(settings) => settings.check(),
             Self::DepthComplexity(settings) => settings.check(),
         }
     }
@@ -102,7 +109,7 @@ impl Technique {
     #[must_use]
     pub fn draws(&self) -> bool {
         match self {
-            Self::RayTraced(_) => false,
+            Self::RayTraced(_) | Self::OcclusionLayers(_) => false,
             Self::HardShadowMap(_) => true,
             Self::DepthComplexity(settings) => settings.evaluation == depth_complexity::Evaluation::Blended,
         }
@@ -125,6 +132,7 @@ impl Technique {
         }
         match self {
             Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
+            Self::OcclusionLayers(settings) => settings.check_call(host),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
     }
@@ -136,7 +144,7 @@ impl Technique {
     pub fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_scene(scene),
-            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::OcclusionLayers(_) => Ok(()),
         }
     }
 
@@ -147,7 +155,7 @@ impl Technique {
     pub fn check_occluders(&self, occluders: &[Arc<OccluderContents>]) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_occluders(occluders),
-            Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::OcclusionLayers(_) => Ok(()),
         }
     }
 
@@ -157,7 +165,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.spread == SampleSpread::Interleaved,
             Self::DepthComplexity(settings) => settings.spread == SampleSpread::Interleaved,
-            Self::HardShadowMap(_) => false,
+            Self::HardShadowMap(_) | Self::OcclusionLayers(_) => false,
         }
     }
 
@@ -166,7 +174,7 @@ impl Technique {
     pub fn stages(&self) -> u32 {
         match self {
             Self::DepthComplexity(settings) => settings.stages(),
-            Self::RayTraced(_) | Self::HardShadowMap(_) => 1,
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::OcclusionLayers(_) => 1,
         }
     }
 
@@ -176,7 +184,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.passes,
             Self::DepthComplexity(settings) => settings.passes,
-            Self::HardShadowMap(_) => 1,
+            Self::HardShadowMap(_) | Self::OcclusionLayers(_) => 1,
         }
     }
 
@@ -186,7 +194,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.samples,
             Self::DepthComplexity(settings) => settings.samples,
-            Self::HardShadowMap(_) => 1,
+            Self::HardShadowMap(_) | Self::OcclusionLayers(_) => 1,
         }
     }
 
@@ -196,7 +204,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.halo_rows(),
             Self::DepthComplexity(settings) => settings.halo_rows(),
-            Self::HardShadowMap(_) => 0,
+            Self::HardShadowMap(_) | Self::OcclusionLayers(_) => 0,
         }
     }
 
@@ -206,7 +214,7 @@ impl Technique {
     pub fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64, is_semi_opaque: bool) -> u64 {
         match self {
             Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes, is_semi_opaque),
-            Self::HardShadowMap(_) => 4 * channels,
+            Self::HardShadowMap(_) | Self::OcclusionLayers(_) => 4 * channels,
             Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels, is_semi_opaque),
         }
     }
@@ -217,6 +225,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::plan(request, settings),
             Self::HardShadowMap(settings) => hard_shadow_map::plan(request, settings),
+            Self::OcclusionLayers(settings) => occlusion_layers::plan(request, settings),
             Self::DepthComplexity(settings) => depth_complexity::plan(request, settings),
         }
     }
@@ -229,6 +238,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => ray_traced::values(request, settings, light, pass),
             Self::HardShadowMap(settings) => hard_shadow_map::values(request, settings, light),
+            Self::OcclusionLayers(settings) => occlusion_layers::values(request, settings, light),
             Self::DepthComplexity(settings) => depth_complexity::values(request, settings, light, pass),
         }
     }

@@ -82,6 +82,7 @@ impl VisibilityProgram<'_> {
             opens_block: opens_pass && task.light == 0 && task.pass == 0,
             first_light: task.light == 0,
             opens_run: opens_pass && task.block == 0 && task.light == 0 && task.pass == 0,
+            only_light: self.lights.len() == 1,
             closes_light: last_pass,
             closes_block: last_pass && task.light + 1 == self.lights.len(),
             stage: task.stage,
@@ -122,10 +123,10 @@ impl VisibilityProgram<'_> {
         if let ReceiverSource::Points(points) = self.receivers {
             points.check_local(&self.scene.local.frame)?;
         }
-        match self.task(0) {
-            Some(task) => self.stage(task, &[]).map(|_| ()),
-            None => Ok(()),
-        }
+        // One stage of every light: stages of one light differ in numbers only.
+        let per_light = self.technique.passes() as usize * self.technique.stages() as usize;
+        let firsts = (0..self.lights.len()).filter_map(|light| self.task(light * per_light));
+        firsts.into_iter().try_for_each(|task| self.stage(task, &[]).map(|_| ()))
     }
 }
 
@@ -133,7 +134,7 @@ impl Program for VisibilityProgram<'_> {
     fn step(&self, index: usize, decision: &[u32]) -> Step {
         match self.task(index).map(|task| self.stage(task, decision)) {
             Some(Ok((plan, values))) => Step::run(plan, values),
-            // `check` has made the first stage already, and stages differ in numbers only.
+            // `check` has made the first stage of every light already, and stages differ in numbers only.
             Some(Err(_)) | None => Step::Done,
         }
     }

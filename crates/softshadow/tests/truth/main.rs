@@ -24,6 +24,7 @@ mod interleaved;
 mod invariance;
 mod lights;
 mod moving;
+mod occlusion_layers;
 mod pixels;
 mod same_samples;
 mod samples;

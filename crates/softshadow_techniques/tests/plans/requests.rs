@@ -97,6 +97,7 @@ impl Fixture {
             opens_block: true,
             first_light: true,
             opens_run: true,
+            only_light: true,
             closes_light: true,
             closes_block: true,
             stage: 0,
