@@ -5,7 +5,7 @@
 // wider than a receiver's lift: the edges of a receiver's own triangle, which it leaves out, always stay.
 //#import shared/slice.wgsl
 //#import shared/receiver.wgsl
-//#import depth_complexity/occluders.wgsl
+//#import shared/occluders.wgsl
 //#import depth_complexity/clusters.wgsl
 //#import depth_complexity/shaft.wgsl
 //#import depth_complexity/tiles.wgsl

@@ -1,6 +1,6 @@
 // The image of an edge on the light: its line, and the directions of its ends. The twin of `depth_complexity/edge.rs`.
 //#import depth_complexity/frame.wgsl
-//#import depth_complexity/occluders.wgsl
+//#import shared/occluders.wgsl
 
 struct EdgeImage {
     low: vec3<f32>,

@@ -1,6 +1,6 @@
 // The side of a face by which an edge is weighed.
 //#import depth_complexity/frame.wgsl
-//#import depth_complexity/occluders.wgsl
+//#import shared/occluders.wgsl
 
 // The side that the light's reference point is on, as seen from beyond the face.
 fn side_from_reference(frame: LightFrame, face: IncidentFace) -> i32 {

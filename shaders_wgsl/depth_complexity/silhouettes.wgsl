@@ -6,7 +6,7 @@
 // that an edge is kept wherever a receiver's own signs could say otherwise.
 //#import shared/slice.wgsl
 //#import depth_complexity/frame.wgsl
-//#import depth_complexity/occluders.wgsl
+//#import shared/occluders.wgsl
 //#import depth_complexity/clusters.wgsl
 
 @group(0) @binding(0) var<uniform> slice: Slice;

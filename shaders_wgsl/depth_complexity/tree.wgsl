@@ -1,5 +1,5 @@
 // A hierarchy over faces, in depth-first order.
-//#import depth_complexity/occluders.wgsl
+//#import shared/occluders.wgsl
 //#import depth_complexity/walk.wgsl
 
 struct TreeNode {

@@ -1,5 +1,6 @@
 //! `visibility`: which fraction of each light every receiver sees.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use softshadow_plan::{Content, ContentKey, RunReport, StageReport, Timing};
@@ -190,7 +191,7 @@ pub(crate) fn run(
     let uploads: BTreeMap<ContentKey, Content> = everything.map(|c| (c.key, c.clone())).collect();
     let total = program.stages() as u64;
     let mut done = 0;
-    let report = engine.run(&program, &uploads, options.timing, &mut |stage: Option<StageReport>| {
+    let report = engine.run(&program, &uploads, options.timing, &mut |stage: Option<StageReport<'_>>| {
         if let Some(stage) = &stage {
             done += 1;
             if let Some(task) = program.task(stage.index) {
@@ -200,8 +201,7 @@ pub(crate) fn run(
             if let (0, Some(task), Some(found)) =
                 (stage.index, program.task(1).filter(|task| task.stage == 1), stage.outputs.get(LARGEST_COUNTS))
             {
-                let decision: Vec<u32> = bytemuck::pod_collect_to_vec(found);
-                collector.result.info.plan += &program.plan(task, &decision).explain();
+                collector.result.info.plan += &program.plan(task, &records(found)).explain();
             }
         }
         on_progress(done, total)
@@ -278,6 +278,11 @@ fn receivers_per_block(
         });
     }
     Ok(most)
+}
+
+/// An output's records, where they lie if they can be read there.
+fn records<T: bytemuck::Pod>(bytes: &[u8]) -> Cow<'_, [T]> {
+    bytemuck::try_cast_slice(bytes).map_or_else(|_| Cow::Owned(bytemuck::pod_collect_to_vec(bytes)), Cow::Borrowed)
 }
 
 /// Puts the blocks' outputs where they belong.
@@ -370,34 +375,30 @@ impl<'a> Collector<'a> {
         Self { result, colors: Vec::new(), frame, caller_ids, unfinished: 0, overflowed: 0, astray: 0 }
     }
 
-    fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Vec<u8>>) {
+    fn add(&mut self, block: Block, light: usize, outputs: &BTreeMap<String, Cow<'_, [u8]>>) {
         let start = block.first + block.skip;
         if let Some(bytes) = outputs.get(RECEIVERS) {
-            let records: Vec<Receiver> = bytemuck::pod_collect_to_vec(bytes);
-            for (index, record) in (start..).zip(&records[block.skip..block.skip + block.keep]) {
-                self.add_receiver(index, record);
-            }
+            self.add_receivers(start, &records(bytes)[block.skip..block.skip + block.keep]);
         }
         for (_, bytes) in outputs.iter().filter(|(label, _)| label.starts_with(TRACE_COUNTS)) {
-            let counts: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+            let counts = records::<u32>(bytes);
             self.result.info.traced_receivers += counts.first().map_or(0, |n| u64::from(*n));
             self.unfinished += counts.get(1).map_or(0, |n| u64::from(*n));
         }
         if let Some(bytes) = outputs.get(LIST_COUNTS) {
-            let counts: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+            let counts = records::<u32>(bytes);
             self.result.info.silhouette_edges += u64::from(counts[2]);
             self.unfinished += u64::from(counts[3]);
             self.result.info.area_receivers += u64::from(counts[4]);
             self.overflowed += u64::from(counts[5]);
         }
         if let Some(bytes) = outputs.get(LARGEST_COUNTS) {
-            let largest: Vec<Largest> = bytemuck::pod_collect_to_vec(bytes);
-            self.astray += largest.iter().map(|l| u64::from(l.astray)).sum::<u64>();
+            self.astray += records::<Largest>(bytes).iter().map(|l| u64::from(l.astray)).sum::<u64>();
         }
         let (count, channels) = (self.result.receivers, self.result.channels);
         let copy = |label: &str, width: usize, into: &mut [f32]| {
             let Some(bytes) = outputs.get(label) else { return };
-            let values: Vec<f32> = bytemuck::pod_collect_to_vec(bytes);
+            let values = records::<f32>(bytes);
             let at = (light * count + start) * width;
             into[at..at + block.keep * width]
                 .copy_from_slice(&values[block.skip * width..(block.skip + block.keep) * width]);
@@ -407,33 +408,37 @@ impl<'a> Collector<'a> {
             copy(STANDARD_ERROR, channels, errors);
         }
         if let (Some(masks), Some(bytes)) = (&mut self.result.masks, outputs.get(BLOCKED)) {
-            let words: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+            let words = records::<u32>(bytes);
             let at = (light * count + start) * masks.words;
             masks.bits[at..at + block.keep * masks.words]
                 .copy_from_slice(&words[block.skip * masks.words..(block.skip + block.keep) * masks.words]);
         }
         if let Some(bytes) = outputs.get(COLOR) {
-            let colors: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(bytes);
+            let colors = records::<[f32; 4]>(bytes);
             self.colors.resize(count, [0.0; 4]);
             self.colors[start..start + block.keep].copy_from_slice(&colors[block.skip..block.skip + block.keep]);
         }
     }
 
-    fn add_receiver(&mut self, index: usize, record: &Receiver) {
-        self.result.valid[index] = record.kind != 0;
-        let Some(placed) = self.result.placed.as_mut().filter(|_| record.kind != 0) else { return };
-        placed.positions[index] = self.frame.world_from_local(record.position);
-        placed.normals[index] = record.normal;
-        placed.triangles[index] = self.caller_ids.get(record.triangle as usize).map_or(-1, |id| i64::from(*id));
+    fn add_receivers(&mut self, start: usize, records: &[Receiver]) {
+        self.result.valid[start..].iter_mut().zip(records).for_each(|(valid, record)| *valid = record.kind != 0);
+        let Some(placed) = &mut self.result.placed else { return };
+        for (index, record) in (start..).zip(records).filter(|(_, record)| record.kind != 0) {
+            placed.positions[index] = self.frame.world_from_local(record.position);
+            placed.normals[index] = record.normal;
+            placed.triangles[index] = self.caller_ids.get(record.triangle as usize).map_or(-1, |id| i64::from(*id));
+        }
     }
 
     fn finish(mut self, report: RunReport) -> (Visibility, Vec<[f32; 4]>) {
         let (count, channels) = (self.result.receivers, self.result.channels);
         let valid = &self.result.valid;
-        let is_valid = |position: usize| valid[position / channels % count];
         // A value where there is no receiver would be a number that nobody measured.
         let blank = |values: &mut [f32]| {
-            values.iter_mut().enumerate().filter(|(i, _)| !is_valid(*i)).for_each(|(_, v)| *v = f32::NAN);
+            for light in values.chunks_exact_mut((count * channels).max(1)) {
+                let rows = light.chunks_exact_mut(channels).zip(valid);
+                rows.filter(|(_, valid)| !**valid).for_each(|(row, _)| row.fill(f32::NAN));
+            }
         };
         blank(&mut self.result.values);
         if let Some(errors) = &mut self.result.standard_error {

@@ -1,5 +1,6 @@
 //! The interpreter: a program's stages, one submission each unless a pass is so long that it is split.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -84,6 +85,7 @@ impl Engine for WgpuEngine {
             outputs.retain(|name, _| stage.plan.outputs.iter().any(|id| label(id) == name));
             report.wall_ms = started.elapsed().as_secs_f64() * 1e3;
             report.stages += 1;
+            let outputs = outputs.into_iter().map(|(label, bytes)| (label, Cow::Owned(bytes))).collect();
             if !on_stage(Some(StageReport { index, outputs })) {
                 return Err(EngineError::Interrupted);
             }

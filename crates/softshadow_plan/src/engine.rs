@@ -1,5 +1,6 @@
 //! What runs programs: the contract of every engine, and what a run reports.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -10,7 +11,7 @@ use crate::program::Program;
 use crate::resource::{Content, ContentKey};
 
 /// Receives each stage's outputs and returns whether to go on; it is also asked, with `None`, between the parts of a long stage.
-pub type OnStage<'a> = &'a mut dyn FnMut(Option<StageReport>) -> bool;
+pub type OnStage<'a> = &'a mut dyn FnMut(Option<StageReport<'_>>) -> bool;
 
 /// Something that runs programs. Engines know no technique: they look kernels up by name and do what the passes say, in order.
 pub trait Engine: Send + Sync {
@@ -99,11 +100,20 @@ pub struct PassTime {
 
 /// What one stage produced.
 #[derive(Debug, Clone, PartialEq)]
-pub struct StageReport {
+pub struct StageReport<'a> {
     /// Position of the stage in its program.
     pub index: usize,
-    /// Contents of the plan's outputs, by label.
-    pub outputs: BTreeMap<String, Vec<u8>>,
+    /// Contents of the plan's outputs, by label. An engine lends what lies in its own memory.
+    pub outputs: BTreeMap<String, Cow<'a, [u8]>>,
+}
+
+impl StageReport<'_> {
+    /// A report that outlives the engine's call.
+    #[must_use]
+    pub fn into_owned(self) -> StageReport<'static> {
+        let own = |(label, bytes): (String, Cow<'_, [u8]>)| (label, Cow::Owned(bytes.into_owned()));
+        StageReport { index: self.index, outputs: self.outputs.into_iter().map(own).collect() }
+    }
 }
 
 /// What a run cost.

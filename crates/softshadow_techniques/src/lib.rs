@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Host, Plan, Values};
-use softshadow_scene::{Light, SampleSpread, SceneError};
+use softshadow_scene::{Light, LightSamples, LightSampling, SampleSpread, SceneError};
 
 pub use block::{Block, blocks};
 pub use depth_complexity::{Attenuation, DepthComplexity};
@@ -156,6 +156,21 @@ impl Technique {
         match self {
             Self::DepthComplexity(settings) => settings.check_occluders(occluders),
             Self::RayTraced(_) | Self::HardShadowMap(_) | Self::OcclusionLayers(_) => Ok(()),
+        }
+    }
+
+    /// Checks whether a request's light can be served.
+    ///
+    /// # Errors
+    /// [`TechniqueError`] says why not.
+    pub fn check_light(&self, request: &Request<'_>) -> Result<(), TechniqueError> {
+        let (light, frame) = (request.light, &request.scene.local.frame);
+        let has_samples = |sampling: &LightSampling| Ok(LightSamples::new(light, frame, sampling).map(drop)?);
+        match self {
+            Self::RayTraced(settings) => has_samples(&settings.sampling(0)),
+            Self::DepthComplexity(settings) => has_samples(&settings.sampling(0)),
+            Self::OcclusionLayers(settings) => occlusion_layers::values(request, settings, light).map(drop),
+            Self::HardShadowMap(_) => Ok(()),
         }
     }
 

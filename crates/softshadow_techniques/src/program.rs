@@ -110,7 +110,7 @@ impl VisibilityProgram<'_> {
     /// Checks what would make a stage fail, so that [`Program::step`] cannot.
     ///
     /// # Errors
-    /// As [`Technique::check`], [`Technique::check_call`], [`Technique::check_scene`] and [`Technique::values`].
+    /// As [`Technique::check`], [`Technique::check_call`], [`Technique::check_scene`] and [`Technique::check_light`].
     pub fn check(&self) -> Result<(), TechniqueError> {
         self.technique.check()?;
         self.technique.check_call(self.receivers, self.lights, &self.host)?;
@@ -123,10 +123,10 @@ impl VisibilityProgram<'_> {
         if let ReceiverSource::Points(points) = self.receivers {
             points.check_local(&self.scene.local.frame)?;
         }
-        // One stage of every light: stages of one light differ in numbers only.
+        // What a light can be refused for shows in its first stage: the others differ in numbers only.
         let per_light = self.technique.passes() as usize * self.technique.stages() as usize;
-        let firsts = (0..self.lights.len()).filter_map(|light| self.task(light * per_light));
-        firsts.into_iter().try_for_each(|task| self.stage(task, &[]).map(|_| ()))
+        let mut firsts = (0..self.lights.len()).filter_map(|light| self.task(light * per_light));
+        firsts.try_for_each(|task| self.technique.check_light(&self.request(task, &[])))
     }
 }
 
@@ -134,7 +134,7 @@ impl Program for VisibilityProgram<'_> {
     fn step(&self, index: usize, decision: &[u32]) -> Step {
         match self.task(index).map(|task| self.stage(task, decision)) {
             Some(Ok((plan, values))) => Step::run(plan, values),
-            // `check` has made the first stage of every light already, and stages differ in numbers only.
+            // `check` has tried every light, and nothing else can fail.
             Some(Err(_)) | None => Step::Done,
         }
     }

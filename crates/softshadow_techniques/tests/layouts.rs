@@ -15,12 +15,13 @@ use softshadow_techniques::depth_complexity::blended::{Largest, Packing, TARGETS
 use softshadow_techniques::depth_complexity::{
     AttenuationScale, ClusterRange, CoverSettings, FoldSettings, FrameRecord, SampleBins, TouchingRange,
 };
-use softshadow_techniques::hard_shadow_map::{ShadowView, ShadowViews};
 use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
+use softshadow_techniques::parts::light_silhouettes::{EdgeCorners, LIGHT_SILHOUETTE_BYTES};
 use softshadow_techniques::parts::occluder_buffers::{EdgeRecord, FaceRecord, IncidentFace, UNEQUAL_FACES};
 use softshadow_techniques::parts::receivers::{CameraClip, CameraRays, PointRange, RECEIVER_BYTES, Receiver, SubScene};
 use softshadow_techniques::parts::shading::{MaterialRecord, ShadingRecord};
+use softshadow_techniques::parts::shadow_views::{ShadowView, ShadowViews};
 use softshadow_techniques::ray_traced::{ProbeImage, TraceRange};
 
 /// Members and bytes of a struct.
@@ -33,7 +34,7 @@ struct Layout {
 /// A Rust struct: its name, its bytes by the compiler, the WGSL file and the struct there.
 type Pair = (&'static str, usize, &'static str, &'static str);
 
-const PAIRS: [Pair; 30] = [
+const PAIRS: &[Pair] = &[
     ("Receiver", size_of::<Receiver>(), "shared/receiver.wgsl", "Receiver"),
     ("CameraClip", size_of::<CameraClip>(), "receivers/draw_triangle_ids.wgsl", "CameraClip"),
     ("CameraRays", size_of::<CameraRays>(), "receivers/place_on_triangles.wgsl", "CameraRays"),
@@ -49,13 +50,14 @@ const PAIRS: [Pair; 30] = [
     ("BvhNode", size_of::<BvhNode>(), "ray_traced/hierarchy.wgsl", "BvhNode"),
     ("Corner", size_of::<Corner>(), "shared/triangle.wgsl", "Corner"),
     ("ProbeImage", size_of::<ProbeImage>(), "ray_traced/choose.wgsl", "ProbeImage"),
-    ("ShadowView", size_of::<ShadowView>(), "hard_shadow_map/view.wgsl", "ShadowView"),
-    ("FaceRecord", size_of::<FaceRecord>(), "depth_complexity/occluders.wgsl", "Face"),
-    ("EdgeRecord", size_of::<EdgeRecord>(), "depth_complexity/occluders.wgsl", "OccluderEdge"),
-    ("IncidentFace", size_of::<IncidentFace>(), "depth_complexity/occluders.wgsl", "IncidentFace"),
+    ("ShadowView", size_of::<ShadowView>(), "shared/shadow_view.wgsl", "ShadowView"),
+    ("FaceRecord", size_of::<FaceRecord>(), "shared/occluders.wgsl", "Face"),
+    ("EdgeRecord", size_of::<EdgeRecord>(), "shared/occluders.wgsl", "OccluderEdge"),
+    ("IncidentFace", size_of::<IncidentFace>(), "shared/occluders.wgsl", "IncidentFace"),
     ("BvhNode", size_of::<BvhNode>(), "depth_complexity/tree.wgsl", "TreeNode"),
     ("FrameRecord", size_of::<FrameRecord>(), "depth_complexity/frame.wgsl", "LightFrame"),
     ("ClusterRange", size_of::<ClusterRange>(), "depth_complexity/clusters.wgsl", "ClusterRange"),
+    ("EdgeCorners", size_of::<EdgeCorners>(), "light_silhouettes/list.wgsl", "EdgeCorners"),
     ("AttenuationScale", size_of::<AttenuationScale>(), "depth_complexity/spread_reference.wgsl", "AttenuationScale"),
     ("CoverSettings", size_of::<CoverSettings>(), "depth_complexity/cover_faces.wgsl", "CoverSettings"),
     ("SampleBins", size_of::<SampleBins>(), "depth_complexity/sample_bins.wgsl", "SampleBins"),
@@ -67,7 +69,7 @@ const PAIRS: [Pair; 30] = [
 ];
 
 /// The one struct that holds others.
-const VIEWS: Pair = ("ShadowViews", size_of::<ShadowViews>(), "hard_shadow_map/look_up.wgsl", "ShadowViews");
+const VIEWS: Pair = ("ShadowViews", size_of::<ShadowViews>(), "shared/shadow_view.wgsl", "ShadowViews");
 
 /// Texts of every source file of the crates that upload structs.
 fn sources() -> Vec<String> {
@@ -140,7 +142,7 @@ fn every_uploaded_struct_lies_as_its_twin() {
     let texts = sources();
     let found: Vec<(&str, &str)> = texts.iter().flat_map(|text| uploaded(text)).collect();
     let mut tested = BTreeSet::new();
-    for (name, size, file, wgsl) in PAIRS.into_iter().chain([VIEWS]) {
+    for (name, size, file, wgsl) in PAIRS.iter().copied().chain([VIEWS]) {
         let (_, body) = found.iter().find(|(known, _)| *known == name).unwrap_or_else(|| panic!("no struct {name}"));
         let rust = layout(body);
         assert_eq!(rust.bytes as usize, size, "{name}: the compiler's size");
@@ -289,8 +291,14 @@ fn wedges_are_drawn_and_counted_as_plans_say() {
 }
 
 #[test]
+fn light_silhouettes_are_as_long_as_plans_say() {
+    assert_eq!(u64::from(twin("light_silhouettes/list.wgsl", "LightSilhouette").bytes), LIGHT_SILHOUETTE_BYTES);
+    assert_eq!(twin("light_silhouettes/list.wgsl", "DrawArguments").bytes, 16);
+}
+
+#[test]
 fn faces_and_leaves_are_packed_alike() {
-    let occluders = shader("depth_complexity/occluders.wgsl");
+    let occluders = shader("shared/occluders.wgsl");
     assert_eq!(constant(occluders, "NO_SIDE"), Some(u64::from(NO_SIDE)));
     assert_eq!(constant(occluders, "UNEQUAL_FACES"), Some(u64::from(UNEQUAL_FACES)));
     assert_eq!(constant(shader("depth_complexity/attenuation.wgsl"), "OPAQUE"), Some(u64::from(OPAQUE)));
@@ -317,16 +325,16 @@ fn structs_of_depth_complexity_are_the_same_in_every_kernel() {
         module(&file).unwrap()
     });
     let homes = [
-        ("frame", &["LightFrame", "FrameSamples"][..]),
-        ("occluders", &["Face", "OccluderEdge", "IncidentFace"]),
-        ("clusters", &["Cluster", "ClusterRange"]),
-        ("tiles", &["TilePart", "Slot", "ListCounts"]),
-        ("tree", &["TreeNode"]),
-        ("spread_reference", &["AttenuationScale"]),
+        ("depth_complexity/frame", &["LightFrame", "FrameSamples"][..]),
+        ("shared/occluders", &["Face", "OccluderEdge", "IncidentFace"]),
+        ("depth_complexity/clusters", &["Cluster", "ClusterRange"]),
+        ("depth_complexity/tiles", &["TilePart", "Slot", "ListCounts"]),
+        ("depth_complexity/tree", &["TreeNode"]),
+        ("depth_complexity/spread_reference", &["AttenuationScale"]),
     ];
     for (file, names) in homes {
         for name in names {
-            let home = twin(&format!("depth_complexity/{file}.wgsl"), name);
+            let home = twin(&format!("{file}.wgsl"), name);
             let uses = kernels.iter().filter_map(|kernel| kernel.structs.get(*name));
             let same = uses.map(|s| Layout { members: s.members.clone(), bytes: s.bytes } == home).collect::<Vec<_>>();
             assert!(!same.is_empty() && same.iter().all(|same| *same), "{name}: {same:?}");

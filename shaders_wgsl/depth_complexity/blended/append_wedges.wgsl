@@ -1,6 +1,6 @@
 // Lists the edges that can be silhouettes over any part of the light, and counts the corners of their wedges for an indirect draw.
 //#import shared/slice.wgsl
-//#import depth_complexity/occluders.wgsl
+//#import shared/occluders.wgsl
 //#import depth_complexity/clusters.wgsl
 //#import depth_complexity/tiles.wgsl
 //#import depth_complexity/blended/hull.wgsl

@@ -6,7 +6,7 @@
 // signs with which edges count: so next to edges, and in contact, this disagrees with rays, and all samples of the receiver are wrong.
 //#import shared/receiver.wgsl
 //#import depth_complexity/frame.wgsl
-//#import depth_complexity/occluders.wgsl
+//#import shared/occluders.wgsl
 //#import depth_complexity/blended/hull.wgsl
 
 @group(0) @binding(0) var<uniform> light_frame: LightFrame;

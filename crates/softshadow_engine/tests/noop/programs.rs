@@ -40,10 +40,10 @@ pub(crate) fn run(
     engine: &WgpuEngine,
     program: &dyn Program,
     timing: Timing,
-) -> Result<(RunReport, Vec<StageReport>), EngineError> {
+) -> Result<(RunReport, Vec<StageReport<'static>>), EngineError> {
     let mut reports = Vec::new();
     let report = engine.run(program, &BTreeMap::new(), timing, &mut |stage| {
-        reports.extend(stage);
+        reports.extend(stage.map(StageReport::into_owned));
         true
     })?;
     Ok((report, reports))

@@ -1,5 +1,7 @@
 //! What a run reports, and what it hands out.
 
+use std::borrow::Cow;
+
 use softshadow_engine::WgpuEngine;
 use softshadow_plan::{DeviceKind, Engine as _, Host, Plan, Program, Step, Timing, Values};
 
@@ -96,7 +98,8 @@ impl Program for Deciding {
 fn handed_out(hands_out: bool) -> Vec<Vec<(String, Vec<u8>)>> {
     let (report, stages) = run(&engine(), &Deciding { hands_out }, Timing::Device).unwrap();
     assert_eq!(report.stages, 2, "the second stage saw three zero words");
-    stages.into_iter().map(|s| s.outputs.into_iter().collect()).collect()
+    let words = |(label, bytes): (String, Cow<'_, [u8]>)| (label, bytes.into_owned());
+    stages.into_iter().map(|s| s.outputs.into_iter().map(words).collect()).collect()
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod call;
 mod store;
 mod threads;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -134,11 +135,18 @@ impl Engine for NativeEngine {
                 // Whatever a failed stage left behind is not trusted again.
                 *store = Store::default();
             }
-            let outputs;
-            (outputs, decision) = result?;
+            let buffers = result?;
             report.wall_ms = started.elapsed().as_secs_f64() * 1e3;
             report.stages += 1;
-            if !on_stage(Some(StageReport { index, outputs })) {
+            let lend = |id: &ResourceId| {
+                let resource = &stage.plan.resources[id.index()];
+                let bytes: &[u8] = bytemuck::cast_slice(&buffers[id.index()]);
+                (resource.label.clone(), Cow::Borrowed(&bytes[..resource.bytes() as usize]))
+            };
+            let goes_on = on_stage(Some(StageReport { index, outputs: stage.plan.outputs.iter().map(lend).collect() }));
+            decision = stage.plan.decision.map_or_else(Vec::new, |id| buffers[id.index()].clone());
+            store.put_back(&stage.plan, buffers);
+            if !goes_on {
                 return Err(EngineError::Interrupted);
             }
             index += 1;
@@ -147,10 +155,8 @@ impl Engine for NativeEngine {
     }
 }
 
-/// Contents of a plan's outputs by label, and its decision.
-type Results = (BTreeMap<String, Vec<u8>>, Vec<u32>);
-
 impl NativeEngine {
+    /// Runs the passes of a stage and returns the buffers of its resources.
     fn run_stage(
         &self,
         store: &mut Store,
@@ -159,7 +165,7 @@ impl NativeEngine {
         contents: &BTreeMap<ContentKey, Content>,
         report: &mut RunReport,
         on_stage: OnStage<'_>,
-    ) -> Result<Results, EngineError> {
+    ) -> Result<Vec<Vec<u32>>, EngineError> {
         let plan = &stage.plan;
         if self.is_lost() {
             let reason = "destroyed by the caller".to_owned();
@@ -182,15 +188,7 @@ impl NativeEngine {
                 return Err(EngineError::Interrupted);
             }
         }
-        let bytes_of = |id: &ResourceId| {
-            let resource = &plan.resources[id.index()];
-            let bytes: &[u8] = bytemuck::cast_slice(&buffers[id.index()]);
-            (resource.label.clone(), bytes[..resource.bytes() as usize].to_vec())
-        };
-        let outputs = plan.outputs.iter().map(bytes_of).collect();
-        let decision = plan.decision.map_or_else(Vec::new, |id| buffers[id.index()].clone());
-        store.put_back(plan, buffers);
-        Ok((outputs, decision))
+        Ok(buffers)
     }
 
     /// Runs one pass; false where the caller asked to stop.

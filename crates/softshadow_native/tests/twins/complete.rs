@@ -5,7 +5,8 @@ use softshadow_plan::Kernel;
 use softshadow_shaders::{EMBEDDED, Stage, module};
 
 /// Kernels of techniques that draw triangles.
-const DRAWS: [&str; 3] = ["hard_shadow_map/", "depth_complexity/blended/", "receivers/place_on_triangles.wgsl"];
+const DRAWS: &[&str] =
+    &["hard_shadow_map/", "light_silhouettes/", "depth_complexity/blended/", "receivers/place_on_triangles.wgsl"];
 
 #[test]
 fn every_kernel_has_a_twin_but_those_of_techniques_that_draw() {

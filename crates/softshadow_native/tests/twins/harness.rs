@@ -1,5 +1,6 @@
 //! Runs a program on both engines and finds the first pass after which a buffer differs.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
@@ -332,7 +333,7 @@ pub(crate) fn outputs(
     let mut found = Vec::new();
     let mut keep = |stage: Option<StageReport>| {
         if let Some(stage) = stage {
-            let words = |(label, bytes): (String, Vec<u8>)| (label, bytemuck::pod_collect_to_vec(&bytes));
+            let words = |(label, bytes): (String, Cow<'_, [u8]>)| (label, bytemuck::pod_collect_to_vec(&bytes));
             found.push(stage.outputs.into_iter().map(words).collect());
         }
         true
@@ -418,7 +419,7 @@ impl Engine for Spoilt<'_> {
     ) -> Result<RunReport, EngineError> {
         let mut spoil = |mut stage: Option<StageReport>| {
             if let Some(bytes) = stage.as_mut().and_then(|stage| stage.outputs.get_mut(self.label)) {
-                bytes[0] ^= 1;
+                bytes.to_mut()[0] ^= 1;
             }
             on_stage(stage)
         };

@@ -2,6 +2,7 @@
 
 pub mod interleaving;
 pub mod light_buffers;
+pub mod light_silhouettes;
 pub mod occluder_buffers;
 pub mod opacity;
 pub(crate) mod pattern_name;
@@ -9,6 +10,7 @@ pub mod receivers;
 pub mod resolve;
 pub mod scene_buffers;
 pub mod shading;
+pub mod shadow_views;
 pub(crate) mod spread;
 
 /// Label of the buffer in which every technique leaves its values.

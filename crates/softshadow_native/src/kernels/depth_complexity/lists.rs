@@ -37,9 +37,13 @@ impl Bundle {
         });
         let nobody = Receiver { position: Vec3::ZERO, triangle: NO_TRIANGLE, normal: Vec3::ZERO, kind: RECEIVER_POINT };
         let looks = |slot: &Slot| slot.depth != NO_VIEW;
-        let receiver = |slot: Slot| if looks(&slot) { receivers[slot.receiver as usize] } else { nobody };
-        let looking = slots.iter().enumerate().map(|(k, slot)| u32::from(looks(slot)) << k).sum();
-        Self { receivers: slots.map(receiver), slots, looking }
+        let (mut looking, mut here) = (0, [nobody; BUNDLE]);
+        // A loop: `map` over an array of this size is a call that moves it about in memory.
+        for (k, slot) in slots.iter().enumerate().filter(|(_, slot)| looks(slot)) {
+            here[k] = receivers[slot.receiver as usize];
+            looking |= 1 << k;
+        }
+        Self { receivers: here, slots, looking }
     }
 
     /// The lanes of a part of the tile.

@@ -1,4 +1,4 @@
-//! The twin of `depth_complexity/occluders.wgsl`.
+//! The twin of `shared/occluders.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::{Simd, f32x8, i32x8, prelude::*};

@@ -78,7 +78,8 @@ fn fold_part<S: Simd, T: Samples<S>>(
         #[inline(always)]
         |eight, list| {
             let samples = samples(eight);
-            let mut sums = eight.bundle.slots.map(|slot| Sums::begin(slot.depth));
+            let mut sums = [Sums::begin(0); LANES];
+            sums.iter_mut().zip(&eight.bundle.slots).for_each(|(sums, slot)| *sums = Sums::begin(slot.depth));
             let mut attenuated = eight.bundle.slots.map(|slot| Attenuated::begin(slot.attenuation));
             stock.edges(
                 simd,

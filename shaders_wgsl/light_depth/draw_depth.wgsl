@@ -1,5 +1,5 @@
 // Depth of the nearest occluder as seen from the light's centre.
-//#import hard_shadow_map/view.wgsl
+//#import shared/shadow_view.wgsl
 
 @group(0) @binding(0) var<uniform> shadow_view: ShadowView;
 

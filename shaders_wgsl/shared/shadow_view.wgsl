@@ -11,3 +11,11 @@ struct ShadowView {
     forward: vec3<f32>,
     texel: f32,         // half the width of a texel at distance 1 (perspective), or everywhere (parallel)
 }
+
+struct ShadowViews {
+    views: array<ShadowView, 6>,
+    count: u32,
+    channels: u32,
+    reserved0: u32,
+    reserved1: u32,
+}

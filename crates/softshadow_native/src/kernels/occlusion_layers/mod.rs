@@ -1,0 +1,24 @@
+//! Twins of the kernels of `occlusion_layers`.
+
+mod bound_casters;
+mod casters;
+mod layers;
+mod outline;
+mod place_planes;
+mod slice_triangles;
+mod sum_areas;
+
+use super::Twin;
+
+pub(super) fn twin(file: &str, entry: &str) -> Option<Twin> {
+    Some(match (file, entry) {
+        ("bound_casters", "bound_casters") => bound_casters::bound_casters,
+        ("place_planes", "place_planes") => place_planes::place_planes,
+        ("slice_triangles", "slice_triangles") => slice_triangles::slice_triangles,
+        ("slice_triangles", "size_rows") => slice_triangles::size_rows,
+        ("slice_triangles", "slice_rows") => slice_triangles::slice_rows,
+        ("sum_areas", "count_words") => sum_areas::count_words,
+        ("sum_areas", "sum_columns") => sum_areas::sum_columns,
+        _ => return None,
+    })
+}
