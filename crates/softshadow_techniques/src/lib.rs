@@ -70,8 +70,8 @@ impl Technique {
         vec![
             Self::RayTraced(RayTraced::default()),
             Self::HardShadowMap(HardShadowMap::default()),
-            Self::OcclusionLayers(OcclusionLayers::default()),
             Self::DepthComplexity(DepthComplexity::default()),
+            Self::OcclusionLayers(OcclusionLayers::default()),
         ]
     }
 
