@@ -130,6 +130,9 @@ class OcclusionLayers(Technique):
         How slices are put together; the maximum is never too dark, the sum never too bright.
     projection : {"perspective", "parallel"}
         From where the scene is projected onto its slices: a point behind the light, or straight along its emission.
+    near : {"fade", "rays"}
+        What lies between a receiver and the first slice before it: ignored, that slice fading in with depth, as
+        published; or found by a short ray to the middle of every part of the light.
     repair_leaks : bool
         Whether every slice is also written into the next one: closes gaps in thin surfaces, and thickens shadows.
 
@@ -145,6 +148,7 @@ class OcclusionLayers(Technique):
     split: int = _OCCLUSION_LAYERS["split"]
     combine: str = _OCCLUSION_LAYERS["combine"]
     projection: str = _OCCLUSION_LAYERS["projection"]
+    near: str = _OCCLUSION_LAYERS["near"]
     repair_leaks: bool = _OCCLUSION_LAYERS["repair_leaks"]
 
 

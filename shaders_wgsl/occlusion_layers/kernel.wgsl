@@ -6,6 +6,7 @@
 struct LightParts {
     boxes: array<vec4<f32>, 64>,
     weights: array<vec4<f32>, 64>,
+    whole: vec4<f32>,
     count: u32,
     channels: u32,
     combine: u32,
@@ -24,10 +25,10 @@ struct LayerView {
     is_sun: bool,
 }
 
-fn layer_view(frame: LayerFrame, places: LayerPlaces, receiver: vec3<f32>) -> LayerView {
+fn layer_view(frame: LayerFrame, inverse_distance: f32, receiver: vec3<f32>) -> LayerView {
     let q = in_light_frame(frame, receiver);
     var view: LayerView;
-    view.at = projected(q, places.inverse_distance);
+    view.at = projected(q, inverse_distance);
     view.is_sun = frame.kind == LAYERS_SUN;
     view.light_center = vec2<f32>(0.0);
     view.light_scale = vec2<f32>(select(1.0, frame.tangent, view.is_sun));
@@ -50,14 +51,14 @@ fn layer_view(frame: LayerFrame, places: LayerPlaces, receiver: vec3<f32>) -> La
 }
 
 // Lowest and highest corner of the part's image on the plane at a depth before the receiver, in texels.
-fn kernel_box(view: LayerView, places: LayerPlaces, part: vec4<f32>, depth: f32) -> vec4<f32> {
+fn kernel_box(view: LayerView, window: LayerWindow, part: vec4<f32>, depth: f32) -> vec4<f32> {
     let reach = select(1.0 - depth / max(view.at.z, 1e-30), view.at.z - depth, view.is_sun);
     let base = select(view.at.xy * (depth / max(view.at.z, 1e-30)), view.at.xy, view.is_sun);
     let center = base + reach * (view.light_center + view.light_scale * part.xy);
     let half_size = reach * view.light_scale * part.zw;
-    let middle = (center - places.window_low) * places.texels;
+    let middle = (center - window.low) * window.texels;
     // Less than a texel is not known: the share is that of a texel in the same place.
-    let half_texels = max(half_size * places.texels, vec2<f32>(0.5));
+    let half_texels = max(half_size * window.texels, vec2<f32>(0.5));
     return vec4<f32>(middle - half_texels, middle + half_texels);
 }
 
@@ -77,6 +78,13 @@ fn share_above(offset: f32, slope: vec2<f32>) -> f32 {
         smaller = to_corner * to_corner / max(8.0 * long * short, 1e-30);
     }
     return select(1.0 - smaller, smaller, offset < 0.0);
+}
+
+// The way from a receiver to a place on the light; towards a sun as long as it is for one unit of depth.
+fn way_to(frame: LayerFrame, receiver: Receiver, view: LayerView, place: vec2<f32>) -> vec3<f32> {
+    let begin = select(frame.origin - receiver.position, -frame.row_z, view.is_sun);
+    let at = view.light_center + view.light_scale * place;
+    return begin + frame.row_x * (at.x / dot(frame.row_x, frame.row_x)) + frame.row_y * (at.y / dot(frame.row_y, frame.row_y));
 }
 
 // The share of a part of the light that lies above the receiver's own plane.

@@ -25,14 +25,18 @@ struct LayerFrame {
     reserved2: u32,
 }
 
-// What slicing has found out about the casters. Zero, so without a slice, until then.
-struct LayerPlaces {
-    window_low: vec2<f32>,   // where the first texel begins
+// Where texels and slices are. Zero, so without a slice, until slicing has found out about the casters.
+struct LayerWindow {
+    low: vec2<f32>,          // where the first texel begins
     texels: vec2<f32>,       // a unit of the frame
     inverse_distance: f32,   // 1 / d
     slices: u32,
     resolution: u32,
     reserved: u32,
+}
+
+struct LayerPlaces {
+    window: LayerWindow,
     planes: array<f32, 128>, // depth of the far plane of every slice, ascending
 }
 

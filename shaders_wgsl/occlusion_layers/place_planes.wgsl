@@ -12,10 +12,10 @@
 fn place_planes() {
     let resolution = layer_frame.resolution;
     let has_casters = slice.count > 0u && atomicLoad(&caster_bounds.count) > 0u;
-    layer_places.slices = select(0u, layer_frame.slices, has_casters);
-    layer_places.resolution = resolution;
-    layer_places.inverse_distance = caster_range.inverse_distance;
-    layer_places.reserved = 0u;
+    layer_places.window.slices = select(0u, layer_frame.slices, has_casters);
+    layer_places.window.resolution = resolution;
+    layer_places.window.inverse_distance = caster_range.inverse_distance;
+    layer_places.window.reserved = 0u;
     if (!has_casters) {
         return;
     }
@@ -30,8 +30,8 @@ fn place_planes() {
     let extent = high.xy - low.xy;
     let fitted = select(extent, vec2<f32>(max(extent.x, extent.y)), caster_range.is_square != 0u);
     let size = max(fitted, vec2<f32>(1e-6));
-    layer_places.window_low = (low.xy + high.xy - size) * 0.5;
-    layer_places.texels = f32(resolution) / size;
+    layer_places.window.low = (low.xy + high.xy - size) * 0.5;
+    layer_places.window.texels = f32(resolution) / size;
     // Even in depth before the projection; the last plane a hair behind the farthest caster, which must not fall out by rounding.
     let inverse = caster_range.inverse_distance;
     let near = low.z / (1.0 - low.z * inverse);

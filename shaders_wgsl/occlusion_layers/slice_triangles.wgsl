@@ -55,7 +55,7 @@ fn slice_of(depth: f32, slices: u32) -> u32 {
 
 fn sliced(frame: LayerFrame, range: CasterRange, p0: vec3<f32>, p1: vec3<f32>, p2: vec3<f32>) -> Sliced {
     var result: Sliced;
-    let slices = layer_places.slices;
+    let slices = layer_places.window.slices;
     var outline = outline_of(frame, range.inverse_distance, p0, p1, p2);
     let is_there = slices > 0u && outline.exists && outline.low.z < range.farthest;
     if (!is_there || !can_hide(range, p0, cross(p1 - p0, p2 - p0))) {
@@ -63,14 +63,14 @@ fn sliced(frame: LayerFrame, range: CasterRange, p0: vec3<f32>, p1: vec3<f32>, p
     }
     let low = outline.low.z;
     let high = outline.high.z;
-    let scale = vec3<f32>(layer_places.texels, 1.0);
-    let begin = vec3<f32>(layer_places.window_low, 0.0);
+    let scale = vec3<f32>(layer_places.window.texels, 1.0);
+    let begin = vec3<f32>(layer_places.window.low, 0.0);
     for (var k = 0u; k < 4u; k++) {
         outline.sides[k].a = (outline.sides[k].a - begin) * scale;
         outline.sides[k].b = (outline.sides[k].b - begin) * scale;
     }
     result.outline = outline;
-    let resolution = f32(layer_places.resolution);
+    let resolution = f32(layer_places.window.resolution);
     let top = (outline.low.y - begin.y) * scale.y;
     let bottom = (outline.high.y - begin.y) * scale.y;
     result.first_row = u32(clamp(ceil(top - 0.5), 0.0, resolution));
@@ -108,9 +108,9 @@ fn span(triangle: Sliced, y: f32) -> vec2<f32> {
 }
 
 fn fill(slice_index: u32, row: u32, first: u32, end: u32) {
-    let words = layer_places.resolution / 32u;
-    let base = (slice_index * layer_places.resolution + row) * words;
-    if (first < end && slice_index < layer_places.slices) {
+    let words = layer_places.window.resolution / 32u;
+    let base = (slice_index * layer_places.window.resolution + row) * words;
+    if (first < end && slice_index < layer_places.window.slices) {
         for (var word = first / 32u; word <= (end - 1u) / 32u; word++) {
             let from_bit = max(first, word * 32u) - word * 32u;
             let bits = min(end, word * 32u + 32u) - word * 32u - from_bit;
@@ -124,7 +124,7 @@ fn fill(slice_index: u32, row: u32, first: u32, end: u32) {
 fn fill_row(triangle: Sliced, row: u32) {
     let y = f32(row) + 0.5;
     let ends = span(triangle, y);
-    let resolution = f32(layer_places.resolution);
+    let resolution = f32(layer_places.window.resolution);
     let first = u32(clamp(ceil(ends.x - 0.5), 0.0, resolution));
     let end = u32(clamp(ceil(ends.y - 0.5), 0.0, resolution));
     let at_row = triangle.depth + triangle.slope.y * y;
@@ -171,7 +171,7 @@ fn slice_triangles(@builtin(global_invocation_id) invocation: vec3<u32>) {
 }
 
 fn groups_of_rows() -> u32 {
-    return (layer_places.resolution + GROUP - 1u) / GROUP;
+    return (layer_places.window.resolution + GROUP - 1u) / GROUP;
 }
 
 @compute @workgroup_size(1)

@@ -104,3 +104,17 @@ pub(crate) fn notes(scene: &Scene, technique: &Technique, local: &LocalScene) ->
     };
     scene.notes().iter().cloned().chain(taken).chain(by_samples).collect()
 }
+
+/// From this share of the casters' area on, what is seen from the side is worth a word.
+const MUCH_EDGE_ON: f64 = 0.05;
+
+/// What slices of the scene miss of a light's casters, where that is much.
+pub(crate) fn edge_on_note(light: usize, share: f64) -> Option<String> {
+    (share > MUCH_EDGE_ON).then(|| {
+        let percent = (share * 100.0).round();
+        format!(
+            "light {light} sees {percent} % of the area of what can hide it from the side, as walls under a lamp: slices do not hold it, \
+             so its shadows are too bright; use ray_traced or depth_complexity"
+        )
+    })
+}

@@ -70,8 +70,8 @@ impl Technique {
         vec![
             Self::RayTraced(RayTraced::default()),
             Self::HardShadowMap(HardShadowMap::default()),
-            Self::OcclusionLayers(OcclusionLayers::default()),
             Self::DepthComplexity(DepthComplexity::default()),
+            Self::OcclusionLayers(OcclusionLayers::default()),
         ]
     }
 
@@ -229,7 +229,8 @@ impl Technique {
     pub fn bytes_per_receiver(&self, channels: u64, sub_scenes: u64, is_semi_opaque: bool) -> u64 {
         match self {
             Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes, is_semi_opaque),
-            Self::HardShadowMap(_) | Self::OcclusionLayers(_) => 4 * channels,
+            Self::HardShadowMap(_) => 4 * channels,
+            Self::OcclusionLayers(settings) => settings.bytes_per_receiver(channels),
             Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels, is_semi_opaque),
         }
     }

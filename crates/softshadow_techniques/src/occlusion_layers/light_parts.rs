@@ -12,6 +12,7 @@ use super::settings::{Combine, OcclusionLayers};
 pub struct LightParts {
     boxes: [[f32; 4]; 64],
     weights: [[f32; 4]; 64],
+    whole: [f32; 4],
     count: u32,
     channels: u32,
     combine: u32,
@@ -34,11 +35,11 @@ struct Part {
 
 impl LightParts {
     pub(super) fn new(light: &Light, axes: &LightAxes, settings: &OcclusionLayers, channels: u32) -> Self {
-        let outline = outline(light);
-        let parts = parts(&outline, settings.split);
+        let parts = light_parts(light, settings);
         let mut record = Self {
             boxes: [[0.0; 4]; 64],
             weights: [[0.0; 4]; 64],
+            whole: [0.0, 0.0, axes.reach.x as f32, axes.reach.y as f32],
             count: parts.len() as u32,
             channels,
             combine: match settings.combine {
@@ -61,6 +62,15 @@ impl LightParts {
         }
         record
     }
+}
+
+/// How many parts a light has.
+pub(super) fn part_count(light: &Light, settings: &OcclusionLayers) -> u32 {
+    light_parts(light, settings).len() as u32
+}
+
+fn light_parts(light: &Light, settings: &OcclusionLayers) -> Vec<Part> {
+    parts(&outline(light), settings.split)
 }
 
 /// The light's border within `[-1, 1]²`, its y turned as in the frame, counter-clockwise.

@@ -29,22 +29,30 @@ mod light_parts;
 mod settings;
 mod tables;
 
-use softshadow_plan::{Kernel, Over, Plan, Values};
+use softshadow_plan::{Kernel, Over, Plan, ResourceId, Values};
 use softshadow_scene::{Light, LightSampling, SamplePattern};
 
 pub use frame::{CasterRange, LayerFrame};
 pub use light_parts::LightParts;
-pub use settings::{Combine, OcclusionLayers, Projection};
-pub use tables::{CASTER_BOUNDS, CASTER_BOUNDS_BYTES, LAYER_PLACES_BYTES};
+use settings::NEAR_BYTES;
+pub use settings::{Combine, Near, OcclusionLayers, Projection};
+pub use tables::{CASTER_BOUNDS, CASTER_BOUNDS_BYTES, LAYER_PLACES_BYTES, edge_on_share};
 
 use crate::TechniqueError;
 use crate::parts::VISIBILITY;
 use crate::parts::light_buffers::{self, LightBuffers, LightRecord, Sampling};
-use crate::parts::receivers;
 use crate::parts::shading::{self, Seen};
+use crate::parts::{receivers, scene_buffers};
 use crate::request::Request;
 
 const LOOK_UP: Kernel = Kernel { file: "occlusion_layers/look_up.wgsl", entry: "look_up" };
+const LOOK_UP_BEYOND: Kernel = Kernel { file: "occlusion_layers/look_up.wgsl", entry: "look_up_beyond" };
+const TRACE_NEAR: Kernel = Kernel { file: "occlusion_layers/look_up.wgsl", entry: "trace_near" };
+
+/// Rays of one invocation of `trace_near`.
+const RAYS: u32 = 8;
+/// Label of how many runs of short rays were traced, and how many rays a driver cut short.
+pub const NEAR_COUNTS: &str = "near counts";
 
 /// Light samples of the unshadowed light in a picture.
 const SHADING_SAMPLES: u32 = 64;
@@ -59,15 +67,21 @@ pub(crate) fn plan(request: &Request<'_>, settings: &OcclusionLayers) -> Plan {
     let layers = tables::append(&mut plan, request, settings, frame);
     let parts = plan.parameter("light parts", size_of::<LightParts>() as u64);
     let visibility = plan.persistent(VISIBILITY, count as u64 * 4 * u64::from(request.channels));
+    let near = (settings.near == Near::Rays && !request.scene.local.sub_scenes.is_empty())
+        .then(|| append_near(&mut plan, request, settings, [light, frame, parts, receivers, layers.places]));
     let over = Over::Items { count: count as u32, work_per_item: settings.split * settings.split * settings.slices };
-    plan.compute("look up", "puts the slices before each receiver together", LOOK_UP, over)
-        .bind("light", light)
+    let kernel = if near.is_some() { LOOK_UP_BEYOND } else { LOOK_UP };
+    let pass = plan.compute("look up", "puts the slices before each receiver together", kernel, over);
+    pass.bind("light", light)
         .bind("layer_frame", frame)
         .bind("light_parts", parts)
         .bind("receivers", receivers)
         .bind("layer_places", layers.places)
         .bind("summed_areas", layers.summed_areas)
         .bind("visibility", visibility);
+    if let Some(near) = near {
+        pass.bind("near_blocked", near);
+    }
     if request.wants.picture.is_some() {
         let sampling = plan.parameter("sampling", size_of::<Sampling>() as u64);
         let samples = plan.parameter("light samples", u64::from(SHADING_SAMPLES) * 16);
@@ -77,6 +91,39 @@ pub(crate) fn plan(request: &Request<'_>, settings: &OcclusionLayers) -> Plan {
     plan.outputs.push(visibility);
     plan.outputs.extend(request.opens_block.then_some(receivers));
     plan
+}
+
+/// The bits of parts of the light that something hides before the first slice, and how many rays were traced for them.
+fn append_near(
+    plan: &mut Plan,
+    request: &Request<'_>,
+    settings: &OcclusionLayers,
+    [light, frame, parts, receivers, places]: [ResourceId; 5],
+) -> ResourceId {
+    let corners = scene_buffers::append_corners(plan, request.scene);
+    let nodes = scene_buffers::append_nodes(plan, request.scene);
+    let count = request.block.count as u32;
+    let blocked = plan.buffer("near blocked", u64::from(count) * NEAR_BYTES);
+    plan.clear("nothing near", "no part of the light is hidden at first", blocked);
+    let counts = plan.buffer(NEAR_COUNTS, 8);
+    plan.clear("no near rays", "counts begin at nothing", counts);
+    let runs = light_parts::part_count(request.light, settings).div_ceil(RAYS);
+    let over = Over::Items { count: count * runs, work_per_item: RAYS };
+    for (index, (corners, nodes)) in corners.into_iter().zip(nodes).enumerate() {
+        let why = "finds what hides parts of the light before the first slice";
+        plan.compute(format!("trace near {index}"), why, TRACE_NEAR, over)
+            .bind("light", light)
+            .bind("layer_frame", frame)
+            .bind("light_parts", parts)
+            .bind("receivers", receivers)
+            .bind("layer_places", places)
+            .bind("nodes", nodes)
+            .bind("corners", corners)
+            .bind("near_blocked", blocked)
+            .bind("near_counts", counts);
+    }
+    plan.outputs.push(counts);
+    blocked
 }
 
 /// The values of the plan's parameters for one light.

@@ -20,6 +20,8 @@ pub struct OcclusionLayers {
     pub combine: Combine,
     /// From where the scene is projected onto its slices.
     pub projection: Projection,
+    /// What is done about what lies between a receiver and the first slice before it.
+    pub near: Near,
     /// Whether every slice is written into the next one, too: closes gaps where thin surfaces pass from slice to slice.
     pub repair_leaks: bool,
 }
@@ -46,6 +48,16 @@ pub enum Projection {
     Parallel,
 }
 
+/// What is done about what lies between a receiver and the first slice before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Near {
+    /// It hides nothing, and that slice fades in from its own plane to the next: the paper.
+    Fade,
+    /// A short ray is traced to the middle of every part of the light.
+    Rays,
+}
+
 impl Default for OcclusionLayers {
     fn default() -> Self {
         Self {
@@ -54,10 +66,14 @@ impl Default for OcclusionLayers {
             split: 4,
             combine: Combine::Product,
             projection: Projection::Perspective,
+            near: Near::Rays,
             repair_leaks: false,
         }
     }
 }
+
+/// Bytes of a receiver's bits of parts that something near hides.
+pub(super) const NEAR_BYTES: u64 = 8;
 
 pub(super) const NAME: &str = "occlusion_layers";
 const SLICES: std::ops::RangeInclusive<u32> = 1..=128;
@@ -80,6 +96,11 @@ impl OcclusionLayers {
             return fail("split", format!("must lie between 1 and 8, got {}", self.split));
         }
         Ok(())
+    }
+
+    pub(crate) fn bytes_per_receiver(&self, channels: u64) -> u64 {
+        let near = if self.near == Near::Rays { NEAR_BYTES } else { 0 };
+        4 * channels + near
     }
 
     pub(crate) fn check_call(&self, host: &Host) -> Result<(), TechniqueError> {

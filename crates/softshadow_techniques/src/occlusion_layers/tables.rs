@@ -27,6 +27,15 @@ const TALL_HEADER_BYTES: u64 = 16;
 /// Label of the bounds of the casters, which leave where they are made.
 pub const CASTER_BOUNDS: &str = "caster bounds";
 
+/// The share of all casters' area that the projection sees from the side, by the bounds that were read back.
+#[must_use]
+pub fn edge_on_share(bounds: &[u32]) -> f64 {
+    match bounds {
+        [_, _, _, _, _, _, _, edge_on, area, ..] if *area > 0 => f64::from(*edge_on) / f64::from(*area),
+        _ => 0.0,
+    }
+}
+
 /// What receivers look up.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layers {

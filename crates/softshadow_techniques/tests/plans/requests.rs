@@ -7,10 +7,11 @@ use softshadow_scene::{
     Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, SamplePattern, SampleSpread, Scene,
     look_at,
 };
+use softshadow_techniques::occlusion_layers::Near;
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
-    Attenuation, Block, DepthComplexity, HardShadowMap, OccluderContents, RayTraced, ReceiverSource, Request,
-    SceneContents, Shading, Technique, Wants,
+    Attenuation, Block, DepthComplexity, HardShadowMap, OccluderContents, OcclusionLayers, RayTraced, ReceiverSource,
+    Request, SceneContents, Shading, Technique, Wants,
 };
 
 /// Width and height of the grid's images.
@@ -119,7 +120,12 @@ impl Fixture {
             let served =
                 |receivers: &ReceiverSource<'_>| technique.check_call(*receivers, &[], &Host::default()).is_ok();
             for receivers in [self.camera(), self.points()].into_iter().filter(served) {
-                let has_all = |index: &usize| !asks || *index < self.occluders[scene].len();
+                // And without lights that it refuses.
+                let takes = |index: usize| {
+                    let request = self.request_for(scene, receivers, index);
+                    !asks && technique.values(&request, request.light, 0).is_ok()
+                };
+                let has_all = |index: &usize| takes(*index) || asks && *index < self.occluders[scene].len();
                 for index in (0..self.lights.len()).filter(has_all) {
                     // A picture shows a material, and without triangles there is none: the front door asks for no such plan.
                     let pictures = [None, Some(Shading::Integrated), Some(Shading::Modulated)];
@@ -188,6 +194,17 @@ pub(crate) fn techniques() -> Vec<Technique> {
         all.extend([spreads(64, true, 4), spreads(256, false, 5)].map(Technique::DepthComplexity));
     }
     all.extend([16, 300].map(|resolution| Technique::HardShadowMap(HardShadowMap { resolution })));
+    let layers = |slices, resolution, split, near| OcclusionLayers {
+        slices,
+        resolution,
+        split,
+        near,
+        ..OcclusionLayers::default()
+    };
+    all.extend(
+        [layers(3, 64, 1, Near::Fade), layers(128, 128, 8, Near::Fade), layers(1, 256, 3, Near::Rays)]
+            .map(Technique::OcclusionLayers),
+    );
     all
 }
 

@@ -1,6 +1,6 @@
 //! A handful of plans as text: what a change to a technique changes stands in the diff.
 
-use softshadow_techniques::{DepthComplexity, HardShadowMap, RayTraced, Request, Shading, Technique};
+use softshadow_techniques::{DepthComplexity, HardShadowMap, OcclusionLayers, RayTraced, Request, Shading, Technique};
 
 use crate::requests::Fixture;
 
@@ -37,6 +37,15 @@ fn hard_shadow_map_within_the_scene() {
     let mut request = fixture.request_for(1, fixture.points(), 1);
     request.wants.picture = Some(Shading::Modulated);
     let technique = Technique::HardShadowMap(HardShadowMap { resolution: 512 });
+    insta::assert_snapshot!(technique.plan(&request));
+}
+
+#[test]
+fn occlusion_layers_of_two_sub_scenes() {
+    let fixture = Fixture::new();
+    let mut request = fixture.request(2, fixture.camera());
+    request.wants.picture = Some(Shading::Modulated);
+    let technique = Technique::OcclusionLayers(OcclusionLayers::default());
     insta::assert_snapshot!(technique.plan(&request));
 }
 

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 
+pub(super) const LAYERS_SPHERE: u32 = 1;
 pub(super) const LAYERS_SUN: u32 = 2;
 
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

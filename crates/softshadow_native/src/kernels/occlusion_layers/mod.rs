@@ -2,7 +2,9 @@
 
 mod bound_casters;
 mod casters;
+mod kernel;
 mod layers;
+mod look_up;
 mod outline;
 mod place_planes;
 mod slice_triangles;
@@ -13,6 +15,9 @@ use super::Twin;
 pub(super) fn twin(file: &str, entry: &str) -> Option<Twin> {
     Some(match (file, entry) {
         ("bound_casters", "bound_casters") => bound_casters::bound_casters,
+        ("look_up", "look_up") => look_up::look_up,
+        ("look_up", "look_up_beyond") => look_up::look_up_beyond,
+        ("look_up", "trace_near") => look_up::trace_near,
         ("place_planes", "place_planes") => place_planes::place_planes,
         ("slice_triangles", "slice_triangles") => slice_triangles::slice_triangles,
         ("slice_triangles", "size_rows") => slice_triangles::size_rows,
