@@ -17,7 +17,7 @@ use softshadow_techniques::depth_complexity::{
 };
 use softshadow_techniques::hard_shadow_map::{ShadowView, ShadowViews};
 use softshadow_techniques::occlusion_layers::{
-    CASTER_BOUNDS_BYTES, CasterRange, LAYER_PLACES_BYTES, LayerFrame, LightParts,
+    CASTER_BOUNDS_BYTES, CasterRange, LAYER_PLACES_BYTES, LayerFrame, LevelRange, LightParts,
 };
 use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
@@ -36,7 +36,7 @@ struct Layout {
 /// A Rust struct: its name, its bytes by the compiler, the WGSL file and the struct there.
 type Pair = (&'static str, usize, &'static str, &'static str);
 
-const PAIRS: [Pair; 33] = [
+const PAIRS: [Pair; 34] = [
     ("Receiver", size_of::<Receiver>(), "shared/receiver.wgsl", "Receiver"),
     ("CameraClip", size_of::<CameraClip>(), "receivers/draw_triangle_ids.wgsl", "CameraClip"),
     ("CameraRays", size_of::<CameraRays>(), "receivers/place_on_triangles.wgsl", "CameraRays"),
@@ -54,6 +54,7 @@ const PAIRS: [Pair; 33] = [
     ("ProbeImage", size_of::<ProbeImage>(), "ray_traced/choose.wgsl", "ProbeImage"),
     ("LayerFrame", size_of::<LayerFrame>(), "occlusion_layers/layers.wgsl", "LayerFrame"),
     ("CasterRange", size_of::<CasterRange>(), "occlusion_layers/casters.wgsl", "CasterRange"),
+    ("LevelRange", size_of::<LevelRange>(), "occlusion_layers/build_levels.wgsl", "LevelRange"),
     ("LightParts", size_of::<LightParts>(), "occlusion_layers/kernel.wgsl", "LightParts"),
     ("ShadowView", size_of::<ShadowView>(), "hard_shadow_map/view.wgsl", "ShadowView"),
     ("FaceRecord", size_of::<FaceRecord>(), "depth_complexity/occluders.wgsl", "Face"),
