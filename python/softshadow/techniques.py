@@ -125,8 +125,6 @@ class OcclusionLayers(Technique):
         Texels a side of every slice: a power of two from 64 to 2048.
     filter : {"summed_area", "nbuffer", "mipmap"}
         How the share of a slice is found: exactly, or as published, for comparison.
-    placement : {"uniform", "by_error"}
-        Where slices end: even in depth, or closer together towards receivers behind all casters.
     split : int
         Parts of the light a side, 1 to 8, in each of which slices are multiplied for themselves. 1 is the paper; more
         are slower, and closer to the truth where slices hide the same part of the light.
@@ -150,7 +148,6 @@ class OcclusionLayers(Technique):
     slices: int = _OCCLUSION_LAYERS["slices"]
     resolution: int = _OCCLUSION_LAYERS["resolution"]
     filter: str = _OCCLUSION_LAYERS["filter"]
-    placement: str = _OCCLUSION_LAYERS["placement"]
     split: int = _OCCLUSION_LAYERS["split"]
     combine: str = _OCCLUSION_LAYERS["combine"]
     projection: str = _OCCLUSION_LAYERS["projection"]

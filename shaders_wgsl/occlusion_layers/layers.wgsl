@@ -8,8 +8,6 @@ const LAYERS_FLAT: u32 = 0u;
 const LAYERS_SPHERE: u32 = 1u;
 const LAYERS_SUN: u32 = 2u;
 
-const PLACEMENT_UNIFORM: u32 = 0u;
-const PLACEMENT_BY_ERROR: u32 = 1u;
 
 struct LayerFrame {
     origin: vec3<f32>,
@@ -22,8 +20,8 @@ struct LayerFrame {
     resolution: u32,
     successors: u32,       // whether every slice is written into the next one, too
     filter_kind: u32,      // one of FILTER_
-    placement: u32,        // one of PLACEMENT_
-    reserved: u32,
+    reserved0: u32,
+    reserved1: u32,
 }
 
 // Where texels and slices are. Zero, so without a slice, until slicing has found out about the casters.

@@ -32,18 +32,13 @@ fn place_planes() {
     let size = max(fitted, vec2<f32>(1e-6));
     layer_places.window.low = (low.xy + high.xy - size) * 0.5;
     layer_places.window.texels = f32(resolution) / size;
-    // Even in depth before the projection, or so that every slice is as thick as it is far from the receivers behind all: a caster that is moved
-    // to its plane moves its shadow by that share of it. The last plane a hair behind the farthest caster, which must not fall out by rounding.
+    // Even in depth before the projection. The last plane a hair behind the farthest caster, which must not fall out by rounding.
     let inverse = caster_range.inverse_distance;
     let near = low.z / (1.0 - low.z * inverse);
     let far = high.z / (1.0 - high.z * inverse);
-    let thinnest = max(high.z - low.z, 1e-6) / f32(layer_frame.slices);
-    let behind = max(caster_range.farthest, high.z) + thinnest;
     for (var k = 0u; k < layer_frame.slices; k++) {
-        let share = f32(k + 1u) / f32(layer_frame.slices);
-        let z = near + (far - near) * share;
-        let by_error = behind - (behind - low.z) * pow((behind - high.z) / (behind - low.z), share);
-        layer_places.planes[k] = select(z / (1.0 + z * inverse), by_error, layer_frame.placement == PLACEMENT_BY_ERROR);
+        let z = near + (far - near) * (f32(k + 1u) / f32(layer_frame.slices));
+        layer_places.planes[k] = z / (1.0 + z * inverse);
     }
     let last = layer_frame.slices - 1u;
     layer_places.planes[last] = high.z + 1e-6 * (abs(high.z) + abs(low.z));

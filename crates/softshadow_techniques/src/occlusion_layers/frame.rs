@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use softshadow_scene::{Light, LightShape};
 
-use super::settings::{Filter, NAME, OcclusionLayers, Placement, Projection};
+use super::settings::{Filter, NAME, OcclusionLayers, Projection};
 use crate::TechniqueError;
 use crate::request::{ReceiverSource, Request};
 
@@ -21,8 +21,8 @@ pub struct LayerFrame {
     resolution: u32,
     successors: u32,
     filter_kind: u32,
-    placement: u32,
-    reserved: u32,
+    reserved0: u32,
+    reserved1: u32,
 }
 
 /// `CasterRange` of `casters.wgsl`.
@@ -119,8 +119,8 @@ impl LightAxes {
                 Filter::Nbuffer => 1,
                 Filter::Mipmap => 2,
             },
-            placement: u32::from(settings.placement == Placement::ByError),
-            reserved: 0,
+            reserved0: 0,
+            reserved1: 0,
         }
     }
 

@@ -9,13 +9,13 @@
 //! The technique is known as occlusion textures; glTF uses that name for something else.
 //!
 //! **Parameters.** `slices`, 1 to 128; `resolution` of each, 64 to 2,048 texels a side; `split`; `filter`: `summed_area`, which is exact, and for comparison
-//! the published `nbuffer` and `mipmap`; `placement` of the planes: `uniform` in depth, or `by_error`, closer together towards receivers behind all casters; `combine`: `product`, or for comparison
+//! the published `nbuffer` and `mipmap`; `combine`: `product`, or for comparison
 //! `maximum`, which is never too dark, and `sum`, which is never too bright; `projection`: from a point behind the light (`perspective`), or along its emission
 //! (`parallel`), for comparison; `near`: what lies before the first slice is found by short `rays` to the middle of each part of the light, or
 //! ignored, and that slice fades in (`fade`), as published; `repair_leaks`: every slice is also written into the next one.
 //!
 //! **Where slices lie.** The centre of projection stands as far behind the light as the frustum through its border holds all receivers. Texels
-//! and planes are fitted to the triangles that can hide anything: those whose plane parts the light from some receiver. A floor under everything is none of
+//! and planes, even in depth, are fitted to the triangles that can hide anything: those whose plane parts the light from some receiver. A floor under everything is none of
 //! them, so receivers on it see all slices.
 //!
 //! **When it is wrong.** A caster is moved to the far plane of its slice: shadows of what is near are off by its thickness, and with
@@ -37,7 +37,7 @@ use softshadow_scene::{Light, LightSampling, SamplePattern};
 pub use frame::{CasterRange, LayerFrame};
 pub use light_parts::LightParts;
 use settings::NEAR_BYTES;
-pub use settings::{Combine, Filter, Near, OcclusionLayers, Placement, Projection};
+pub use settings::{Combine, Filter, Near, OcclusionLayers, Projection};
 pub use tables::{CASTER_BOUNDS, CASTER_BOUNDS_BYTES, LAYER_PLACES_BYTES, LevelRange, edge_on_share};
 
 use crate::TechniqueError;

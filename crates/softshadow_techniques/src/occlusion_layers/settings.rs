@@ -16,8 +16,6 @@ pub struct OcclusionLayers {
     pub resolution: u32,
     /// How the share of a box is found.
     pub filter: Filter,
-    /// Where the slices' planes lie.
-    pub placement: Placement,
     /// Parts of the light a side, 1 to 8: slices are put together in each for itself.
     pub split: u32,
     /// How the slices before a receiver are put together.
@@ -40,16 +38,6 @@ pub enum Filter {
     Nbuffer,
     /// As textures are made smaller: for comparison.
     Mipmap,
-}
-
-/// Where the slices' planes lie.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Placement {
-    /// Even in depth.
-    Uniform,
-    /// Closer together towards the receivers behind all casters, as errors there are larger.
-    ByError,
 }
 
 /// How the slices before a receiver are put together.
@@ -87,10 +75,9 @@ pub enum Near {
 impl Default for OcclusionLayers {
     fn default() -> Self {
         Self {
-            slices: 16,
+            slices: 8,
             resolution: 512,
             filter: Filter::SummedArea,
-            placement: Placement::Uniform,
             split: 4,
             combine: Combine::Product,
             projection: Projection::Perspective,
