@@ -123,6 +123,8 @@ class OcclusionLayers(Technique):
         Slices of the scene, 1 to 128.
     resolution : int
         Texels a side of every slice: a power of two from 64 to 2048.
+    filter : {"summed_area", "nbuffer", "mipmap"}
+        How the share of a slice is found: exactly, or as published, for comparison.
     split : int
         Parts of the light a side, 1 to 8, in each of which slices are multiplied for themselves. 1 is the paper; more
         are slower, and closer to the truth where slices hide the same part of the light.
@@ -145,6 +147,7 @@ class OcclusionLayers(Technique):
     name: ClassVar[str] = "occlusion_layers"
     slices: int = _OCCLUSION_LAYERS["slices"]
     resolution: int = _OCCLUSION_LAYERS["resolution"]
+    filter: str = _OCCLUSION_LAYERS["filter"]
     split: int = _OCCLUSION_LAYERS["split"]
     combine: str = _OCCLUSION_LAYERS["combine"]
     projection: str = _OCCLUSION_LAYERS["projection"]

@@ -8,7 +8,6 @@ const LAYERS_FLAT: u32 = 0u;
 const LAYERS_SPHERE: u32 = 1u;
 const LAYERS_SUN: u32 = 2u;
 
-const MOST_SLICES: u32 = 128u;
 
 struct LayerFrame {
     origin: vec3<f32>,
@@ -20,9 +19,9 @@ struct LayerFrame {
     row_z: vec3<f32>,
     resolution: u32,
     successors: u32,       // whether every slice is written into the next one, too
+    filter_kind: u32,      // one of FILTER_
     reserved0: u32,
     reserved1: u32,
-    reserved2: u32,
 }
 
 // Where texels and slices are. Zero, so without a slice, until slicing has found out about the casters.

@@ -3,6 +3,7 @@
 //#import shared/triangle.wgsl
 //#import shared/hierarchy.wgsl
 //#import occlusion_layers/kernel.wgsl
+//#import occlusion_layers/levels.wgsl
 
 struct NearCounts {
     receivers: atomic<u32>,    // times parts that rays were traced for, in runs
@@ -15,7 +16,7 @@ struct NearCounts {
 @group(0) @binding(3) var<uniform> light_parts: LightParts;
 @group(0) @binding(4) var<storage, read> receivers: array<Receiver>;
 @group(0) @binding(5) var<storage, read> layer_places: LayerPlaces;
-@group(0) @binding(6) var<storage, read> summed_areas: array<u32>;
+@group(0) @binding(6) var<storage, read> layer_tables: array<u32>;
 @group(0) @binding(7) var<storage, read_write> visibility: array<f32>;
 @group(0) @binding(8) var<storage, read_write> near_blocked: array<atomic<u32>>;
 @group(0) @binding(9) var<storage, read> nodes: array<BvhNode>;
@@ -26,13 +27,13 @@ struct NearCounts {
 fn row_sums(base: u32, row: u32, stride: u32, columns: vec4<u32>) -> vec4<u32> {
     let at = base + row * stride;
     return vec4<u32>(
-        summed_areas[at + columns.x], summed_areas[at + columns.y], summed_areas[at + columns.z], summed_areas[at + columns.w],
+        layer_tables[at + columns.x], layer_tables[at + columns.y], layer_tables[at + columns.z], layer_tables[at + columns.w],
     );
 }
 
 // Share of the box that the slice hides: the exact mean of its texels, nothing being outside of them. Differences of whole numbers come first,
 // so that nothing cancels: nine cells, of which those at the border weigh what the box has of them.
-fn hidden_share(layer: u32, box: vec4<f32>) -> f32 {
+fn exact_share(layer: u32, box: vec4<f32>) -> f32 {
     let resolution = f32(layer_places.window.resolution);
     let stride = layer_places.window.resolution + 1u;
     let low = clamp(box.xy, vec2<f32>(0.0), vec2<f32>(resolution));
@@ -62,6 +63,54 @@ fn hidden_share(layer: u32, box: vec4<f32>) -> f32 {
 
 fn row_cells(sums: vec4<u32>) -> vec3<f32> {
     return vec3<f32>(vec3<i32>(sums.yzw - sums.xyz));
+}
+
+// The mean over the 2^level texels around a place, between the four entries next to it.
+fn level_mean(layer: u32, level: u32, middle: vec2<f32>) -> f32 {
+    let is_nbuffer = layer_frame.filter_kind == FILTER_NBUFFER;
+    let resolution = layer_places.window.resolution;
+    let groups = (layer_frame.slices + 3u) / 4u;
+    let side = level_side(is_nbuffer, resolution, level);
+    let base = level_begin(is_nbuffer, resolution, groups, level) + layer / 4u * side * side;
+    let size = f32(1u << level);
+    let place = select(middle / size - 0.5, middle + 0.5 * size - 1.0, is_nbuffer);
+    let bounded = clamp(place, vec2<f32>(-2.0), vec2<f32>(f32(side) + 1.0));
+    let low = floor(bounded);
+    let share = bounded - low;
+    var sum = 0.0;
+    for (var k = 0u; k < 4u; k++) {
+        let at = vec2<i32>(low) + vec2<i32>(i32(k & 1u), i32(k >> 1u));
+        let is_there = at.x >= 0 && at.y >= 0 && at.x < i32(side) && at.y < i32(side);
+        let word = layer_tables[base + select(0u, u32(at.y) * side + u32(at.x), is_there)];
+        let weights = select(1.0 - share, share, vec2<bool>((k & 1u) != 0u, (k >> 1u) != 0u));
+        sum += select(0.0, unpack4x8unorm(word)[layer % 4u] * weights.x * weights.y, is_there);
+    }
+    return sum;
+}
+
+// As published: between the two levels next to the kernel's size. A kernel larger than all texels has what lies in all of them.
+fn level_share(layer: u32, box: vec4<f32>) -> f32 {
+    let size = box.zw - box.xy;
+    let wanted = max(0.5 * log2(size.x * size.y), 0.0);
+    let last = firstLeadingBit(layer_places.window.resolution);
+    let level = min(u32(wanted), last - 1u);
+    let middle = (box.xy + box.zw) * 0.5;
+    let share = clamp(wanted - f32(level), 0.0, 1.0);
+    let mean = mix(level_mean(layer, level, middle), level_mean(layer, level + 1u, middle), share);
+    return mean * exp2(-2.0 * max(wanted - f32(last), 0.0));
+}
+
+// A loop of one step for each filter: software drivers skip a loop that no lane needs, and run both sides of a branch.
+fn hidden_share(layer: u32, box: vec4<f32>) -> f32 {
+    var share = 0.0;
+    let is_exact = layer_frame.filter_kind == FILTER_SUMMED_AREA;
+    for (var k = 0u; k < select(0u, 1u, is_exact); k++) {
+        share = exact_share(layer, box);
+    }
+    for (var k = 0u; k < select(1u, 0u, is_exact); k++) {
+        share = level_share(layer, box);
+    }
+    return share;
 }
 
 // Hidden shares put together, from 0 hidden on: what is visible, or hidden, so far.
@@ -107,6 +156,15 @@ fn slices_before(depth: f32) -> SlicesBefore {
     return before;
 }
 
+// As above where rays find what is near. They pass the receiver's own slice and the one before it, whose casters were moved next to the
+// receiver, where the surface that it stands on goes on.
+fn slices_beyond_rays(depth: f32) -> SlicesBefore {
+    var before = slices_before(depth);
+    before.last_weight = 1.0;
+    before.count -= select(1u, 0u, before.is_behind_all || before.count == 0u);
+    return before;
+}
+
 // The slices that hide any of the light at all from a receiver, a bit each; or all of it.
 struct Hiding {
     slices: vec4<u32>,
@@ -142,15 +200,16 @@ fn visible_share(view: LayerView, before: SlicesBefore, part: vec4<f32>, slices:
     return max(visible, 0.0);
 }
 
-fn values_of(index: u32, blocked: vec2<u32>, near_is_traced: bool) -> vec3<f32> {
+fn view_of(index: u32) -> LayerView {
+    return layer_view(layer_frame, layer_places.window.inverse_distance, receivers[index].position);
+}
+
+fn values_of(index: u32, view: LayerView, before: SlicesBefore, blocked: vec2<u32>) -> vec3<f32> {
     let receiver = receivers[index];
     let seen = light_view(light, receiver.position);
     var values = vec3<f32>(select(0.0, 1.0, seen.inside));
     if (receiver.kind != RECEIVER_NONE && seen.exists && !seen.inside) {
-        let view = layer_view(layer_frame, layer_places.window.inverse_distance, receiver.position);
-        var before = slices_before(view.at.z);
-        before.last_weight = select(before.last_weight, 1.0, near_is_traced);
-        var hiding = hiding_slices(view, before);
+        let hiding = hiding_slices(view, before);
         for (var k = 0u; k < select(light_parts.count, 0u, hiding.is_dark); k++) {
             let part = light_parts.boxes[k];
             let is_blocked = (blocked[k / 32u] & (1u << (k % 32u))) != 0u;
@@ -173,7 +232,8 @@ fn store(index: u32, values: vec3<f32>) {
 fn look_up(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if (invocation.x < slice.count) {
         let index = slice.first + invocation.x;
-        store(index, values_of(index, vec2<u32>(0u), false));
+        let view = view_of(index);
+        store(index, values_of(index, view, slices_before(view.at.z), vec2<u32>(0u)));
     }
 }
 
@@ -182,7 +242,9 @@ fn look_up(@builtin(global_invocation_id) invocation: vec3<u32>) {
 fn look_up_beyond(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if (invocation.x < slice.count) {
         let index = slice.first + invocation.x;
-        store(index, values_of(index, vec2<u32>(atomicLoad(&near_blocked[2u * index]), atomicLoad(&near_blocked[2u * index + 1u])), true));
+        let view = view_of(index);
+        let blocked = vec2<u32>(atomicLoad(&near_blocked[2u * index]), atomicLoad(&near_blocked[2u * index + 1u]));
+        store(index, values_of(index, view, slices_beyond_rays(view.at.z), blocked));
     }
 }
 
@@ -238,8 +300,8 @@ fn trace_near(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let index = item / runs;
     let receiver = receivers[index];
     let seen = light_view(light, receiver.position);
-    let view = layer_view(layer_frame, layer_places.window.inverse_distance, receiver.position);
-    let before = slices_before(view.at.z);
+    let view = view_of(index);
+    let before = slices_beyond_rays(view.at.z);
     let is_asked = receiver.kind != RECEIVER_NONE && seen.exists && !seen.inside && !before.is_behind_all && layer_places.window.slices > 0u;
     let first = item % runs * RAYS;
     let end = select(first, min(first + RAYS, light_parts.count), is_asked);

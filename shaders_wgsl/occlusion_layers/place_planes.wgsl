@@ -32,7 +32,7 @@ fn place_planes() {
     let size = max(fitted, vec2<f32>(1e-6));
     layer_places.window.low = (low.xy + high.xy - size) * 0.5;
     layer_places.window.texels = f32(resolution) / size;
-    // Even in depth before the projection; the last plane a hair behind the farthest caster, which must not fall out by rounding.
+    // Even in depth before the projection. The last plane a hair behind the farthest caster, which must not fall out by rounding.
     let inverse = caster_range.inverse_distance;
     let near = low.z / (1.0 - low.z * inverse);
     let far = high.z / (1.0 - high.z * inverse);

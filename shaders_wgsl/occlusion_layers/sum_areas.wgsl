@@ -8,7 +8,7 @@
 @group(0) @binding(1) var<uniform> layer_frame: LayerFrame;
 @group(0) @binding(2) var<storage, read> slice_bits: array<u32>;
 @group(0) @binding(3) var<storage, read_write> words_before: array<u32>;
-@group(0) @binding(4) var<storage, read_write> summed_areas: array<u32>;
+@group(0) @binding(4) var<storage, read_write> layer_tables: array<u32>;
 
 // Bits of a row before each of its words.
 @compute @workgroup_size(64)
@@ -42,11 +42,11 @@ fn sum_columns(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let mask = select((1u << (bits % 32u)) - 1u, 0xffffffffu, bits == 32u);
     var at = layer * stride * stride + column;
     var sum = 0u;
-    summed_areas[at] = 0u;
+    layer_tables[at] = 0u;
     for (var row = 0u; row < resolution; row++) {
         let at_word = (layer * resolution + row) * words + word;
         sum += words_before[at_word] + countOneBits(slice_bits[at_word] & mask);
         at += stride;
-        summed_areas[at] = sum;
+        layer_tables[at] = sum;
     }
 }

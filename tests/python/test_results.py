@@ -361,7 +361,8 @@ def test_defaults_are_those_of_the_library(scene, floor_points):
     from softshadow import _core  # noqa: TID251 - what the defaults are compared with
 
     for row in json.loads(_core.technique_defaults()):
-        kind = {kind.name: kind for kind in (ss.RayTraced, ss.HardShadowMap, ss.DepthComplexity, ss.OcclusionLayers)}[row["name"]]
+        kinds = (ss.RayTraced, ss.HardShadowMap, ss.DepthComplexity, ss.OcclusionLayers)
+        kind = {kind.name: kind for kind in kinds}[row["name"]]
         assert json.loads(kind().to_json()) == row
     info = visibility(scene, light_above(), points=floor_points).info
     assert info["technique"] == json.loads(ss.RayTraced().to_json())

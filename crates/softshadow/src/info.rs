@@ -105,8 +105,8 @@ pub(crate) fn notes(scene: &Scene, technique: &Technique, local: &LocalScene) ->
     scene.notes().iter().cloned().chain(taken).chain(by_samples).collect()
 }
 
-/// From this share of the casters' area on, what is seen from the side is worth a word.
-const MUCH_EDGE_ON: f64 = 0.05;
+/// From this share of the casters' area on, what is seen from the side is worth a word. Of surfaces that look everywhere alike 0.08 is.
+const MUCH_EDGE_ON: f64 = 0.2;
 
 /// What slices of the scene miss of a light's casters, where that is much.
 pub(crate) fn edge_on_note(light: usize, share: f64) -> Option<String> {

@@ -41,7 +41,7 @@ pub use softshadow_scene::{
 pub use softshadow_techniques::depth_complexity::{
     Counters, Coverage, Evaluation, InitialCounts, OccluderUnit, Silhouettes,
 };
-pub use softshadow_techniques::occlusion_layers::{Combine, Near, Projection};
+pub use softshadow_techniques::occlusion_layers::{Combine, Filter, Near, Projection};
 pub use softshadow_techniques::{
     Attenuation, DepthComplexity, HardShadowMap, OcclusionLayers, RayTraced, Shading, Technique, TechniqueError,
 };

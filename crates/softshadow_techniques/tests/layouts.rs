@@ -16,7 +16,7 @@ use softshadow_techniques::depth_complexity::{
     AttenuationScale, ClusterRange, CoverSettings, FoldSettings, FrameRecord, SampleBins, TouchingRange,
 };
 use softshadow_techniques::occlusion_layers::{
-    CASTER_BOUNDS_BYTES, CasterRange, LAYER_PLACES_BYTES, LayerFrame, LightParts,
+    CASTER_BOUNDS_BYTES, CasterRange, LAYER_PLACES_BYTES, LayerFrame, LevelRange, LightParts,
 };
 use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
@@ -55,6 +55,7 @@ const PAIRS: &[Pair] = &[
     ("ProbeImage", size_of::<ProbeImage>(), "ray_traced/choose.wgsl", "ProbeImage"),
     ("LayerFrame", size_of::<LayerFrame>(), "occlusion_layers/layers.wgsl", "LayerFrame"),
     ("CasterRange", size_of::<CasterRange>(), "occlusion_layers/casters.wgsl", "CasterRange"),
+    ("LevelRange", size_of::<LevelRange>(), "occlusion_layers/build_levels.wgsl", "LevelRange"),
     ("LightParts", size_of::<LightParts>(), "occlusion_layers/kernel.wgsl", "LightParts"),
     ("ShadowView", size_of::<ShadowView>(), "shared/shadow_view.wgsl", "ShadowView"),
     ("FaceRecord", size_of::<FaceRecord>(), "shared/occluders.wgsl", "Face"),

@@ -25,6 +25,7 @@ mod invariance;
 mod lights;
 mod moving;
 mod occlusion_layers;
+mod occlusion_layers_hard;
 mod pixels;
 mod same_samples;
 mod samples;

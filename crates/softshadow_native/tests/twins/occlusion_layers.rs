@@ -3,7 +3,7 @@
 use softshadow_native::{NativeEngine, NativeSettings, Vectors};
 use softshadow_scene::{Light, LightShape, Points, look_at};
 use softshadow_techniques::Technique;
-use softshadow_techniques::occlusion_layers::{Combine, Near, OcclusionLayers, Projection};
+use softshadow_techniques::occlusion_layers::{Combine, Filter, Near, OcclusionLayers, Projection};
 
 use crate::harness::{Call, Same, Source, Spoilt, shipped};
 
@@ -56,6 +56,22 @@ fn settings_of_every_kind() {
     }
 }
 
+/// The filters of the paper: single slices, groups of four that are not full, kernels larger than all texels.
+#[test]
+fn filters_for_comparison() {
+    for (filter, name, slices, near) in [
+        (Filter::Nbuffer, "canopy", 8, Near::Rays),
+        (Filter::Nbuffer, "fork", 5, Near::Fade),
+        (Filter::Mipmap, "canopy", 6, Near::Fade),
+        (Filter::Mipmap, "hall", 1, Near::Rays),
+    ] {
+        let settings = OcclusionLayers { slices, resolution: 64, filter, near, split: 2, ..OcclusionLayers::default() };
+        let (scene, light, camera) = shipped(name, [40, 32]);
+        let wide = above(LightShape::Sun { angular_diameter: 0.6 }, 5.0).remove(0);
+        Call::new(layers(settings), &scene, vec![light, wide], camera).compare(same);
+    }
+}
+
 #[test]
 fn lights_of_every_shape() {
     let outline = vec![[-0.6, -0.4], [0.7, -0.5], [0.5, 0.6], [-0.2, 0.3]];
@@ -99,13 +115,15 @@ fn neither_threads_nor_vectors_matter() {
 
 #[test]
 fn a_spoilt_table_is_noticed() {
-    let (scene, light, camera) = shipped("fork", [16, 16]);
-    let settings = OcclusionLayers { slices: 4, resolution: 64, ..OcclusionLayers::default() };
-    let call = Call::new(layers(settings), &scene, vec![light], camera);
     let native = NativeEngine::new(NativeSettings::default());
-    for label in ["slice bits", "summed areas"] {
-        let spoilt = Spoilt { engine: &native, label };
-        let words = call.difference(&spoilt, None, &same).expect("a difference");
-        assert!(words.contains(label), "{words}");
+    for filter in [Filter::SummedArea, Filter::Nbuffer] {
+        let settings = OcclusionLayers { slices: 4, resolution: 64, filter, ..OcclusionLayers::default() };
+        let (scene, light, camera) = shipped("fork", [16, 16]);
+        let call = Call::new(layers(settings), &scene, vec![light], camera);
+        for label in ["slice bits", "layer tables"] {
+            let spoilt = Spoilt { engine: &native, label };
+            let words = call.difference(&spoilt, None, &same).expect("a difference");
+            assert!(words.contains(label), "{words}");
+        }
     }
 }

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use softshadow_scene::{Light, LightShape};
 
-use super::settings::{NAME, OcclusionLayers, Projection};
+use super::settings::{Filter, NAME, OcclusionLayers, Projection};
 use crate::TechniqueError;
 use crate::request::{ReceiverSource, Request};
 
@@ -20,9 +20,9 @@ pub struct LayerFrame {
     row_z: [f32; 3],
     resolution: u32,
     successors: u32,
+    filter_kind: u32,
     reserved0: u32,
     reserved1: u32,
-    reserved2: u32,
 }
 
 /// `CasterRange` of `casters.wgsl`.
@@ -114,9 +114,13 @@ impl LightAxes {
             row_z: single(z),
             resolution: settings.resolution,
             successors: u32::from(settings.repair_leaks),
+            filter_kind: match settings.filter {
+                Filter::SummedArea => 0,
+                Filter::Nbuffer => 1,
+                Filter::Mipmap => 2,
+            },
             reserved0: 0,
             reserved1: 0,
-            reserved2: 0,
         }
     }
 
@@ -165,6 +169,9 @@ impl LightAxes {
                 all.iter().fold(DVec2::NEG_INFINITY, |high, p| high.max(*p)),
             ),
         };
+        // Two texels more: kernels of at least one texel end beyond what they are kernels of.
+        let room = (hull_high - hull_low) * (2.0 / f64::from(settings.resolution));
+        let (hull_low, hull_high) = (hull_low - room, hull_high + room);
         let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         let light = signs.map(|[a, b]| {
             let half = self.scale * self.reach;
@@ -186,7 +193,8 @@ impl LightAxes {
             light,
             light_reach: self.radius as f32,
             extent: request.scene.local.extent,
-            is_square: 0,
+            // Levels know squares of texels alone.
+            is_square: u32::from(settings.filter != Filter::SummedArea),
             reserved: 0,
         })
     }

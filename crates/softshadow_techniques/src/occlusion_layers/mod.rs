@@ -8,16 +8,18 @@
 //!
 //! The technique is known as occlusion textures; glTF uses that name for something else.
 //!
-//! **Parameters.** `slices`, 1 to 128; `resolution` of each, 64 to 2,048 texels a side; `split`; `combine`: `product`, or for comparison
+//! **Parameters.** `slices`, 1 to 128; `resolution` of each, 64 to 2,048 texels a side; `split`; `filter`: `summed_area`, which is exact, and for comparison
+//! the published `nbuffer` and `mipmap`; `combine`: `product`, or for comparison
 //! `maximum`, which is never too dark, and `sum`, which is never too bright; `projection`: from a point behind the light (`perspective`), or along its emission
-//! (`parallel`), for comparison; `repair_leaks`: every slice is also written into the next one.
+//! (`parallel`), for comparison; `near`: what lies before the first slice is found by short `rays` to the middle of each part of the light, or
+//! ignored, and that slice fades in (`fade`), as published; `repair_leaks`: every slice is also written into the next one.
 //!
 //! **Where slices lie.** The centre of projection stands as far behind the light as the frustum through its border holds all receivers. Texels
-//! and planes are fitted to the triangles that can hide anything: those whose plane parts the light from some receiver. A floor under everything is none of
+//! and planes, even in depth, are fitted to the triangles that can hide anything: those whose plane parts the light from some receiver. A floor under everything is none of
 //! them, so receivers on it see all slices.
 //!
-//! **When it is wrong.** A caster is moved to the far plane of its slice: shadows of what is near are off by its thickness, and a receiver
-//! misses what hides it within its own slice, whose share fades in from plane to plane. n slices that hide the same x of a part of the light
+//! **When it is wrong.** A caster is moved to the far plane of its slice: shadows of what is near are off by its thickness, and with
+//! `fade` a receiver misses what hides it within its own slice. n slices that hide the same x of a part of the light
 //! let xⁿ pass where x is right. Surfaces seen from the side (walls under the light) vanish, whatever the number of slices; the
 //! result's notes say how much of the casters that is. Shadows are off by up to a texel. Semi-opaque triangles are taken for opaque, and every result says so.
 //! Discs, polygons and suns are boxes with the same area, centre and variance as their parts; a sphere is the disc that a receiver sees, stretched along the axes of one frame.
@@ -35,8 +37,8 @@ use softshadow_scene::{Light, LightSampling, SamplePattern};
 pub use frame::{CasterRange, LayerFrame};
 pub use light_parts::LightParts;
 use settings::NEAR_BYTES;
-pub use settings::{Combine, Near, OcclusionLayers, Projection};
-pub use tables::{CASTER_BOUNDS, CASTER_BOUNDS_BYTES, LAYER_PLACES_BYTES, edge_on_share};
+pub use settings::{Combine, Filter, Near, OcclusionLayers, Projection};
+pub use tables::{CASTER_BOUNDS, CASTER_BOUNDS_BYTES, LAYER_PLACES_BYTES, LevelRange, edge_on_share};
 
 use crate::TechniqueError;
 use crate::parts::VISIBILITY;
@@ -77,7 +79,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &OcclusionLayers) -> Plan {
         .bind("light_parts", parts)
         .bind("receivers", receivers)
         .bind("layer_places", layers.places)
-        .bind("summed_areas", layers.summed_areas)
+        .bind("layer_tables", layers.layer_tables)
         .bind("visibility", visibility);
     if let Some(near) = near {
         pass.bind("near_blocked", near);
@@ -142,6 +144,7 @@ pub(crate) fn values(
     if tables::are_made(request) {
         let range = axes.range(request, settings)?;
         values.insert("caster range".into(), bytemuck::bytes_of(&range).to_vec());
+        tables::level_values(settings, &mut values);
     }
     let parts = LightParts::new(light, &axes, settings, request.channels);
     values.insert("light parts".into(), bytemuck::bytes_of(&parts).to_vec());

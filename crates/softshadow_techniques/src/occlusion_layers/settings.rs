@@ -14,6 +14,8 @@ pub struct OcclusionLayers {
     pub slices: u32,
     /// Texels a side of every slice: a power of two from 64 to 2,048.
     pub resolution: u32,
+    /// How the share of a box is found.
+    pub filter: Filter,
     /// Parts of the light a side, 1 to 8: slices are put together in each for itself.
     pub split: u32,
     /// How the slices before a receiver are put together.
@@ -24,6 +26,18 @@ pub struct OcclusionLayers {
     pub near: Near,
     /// Whether every slice is written into the next one, too: closes gaps where thin surfaces pass from slice to slice.
     pub repair_leaks: bool,
+}
+
+/// How the share of a box of texels that is set is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Filter {
+    /// Exactly, from a summed-area table of whole numbers.
+    SummedArea,
+    /// Between means over squares of two powers of two, kept at every texel: for comparison.
+    Nbuffer,
+    /// As textures are made smaller: for comparison.
+    Mipmap,
 }
 
 /// How the slices before a receiver are put together.
@@ -61,8 +75,9 @@ pub enum Near {
 impl Default for OcclusionLayers {
     fn default() -> Self {
         Self {
-            slices: 16,
+            slices: 8,
             resolution: 512,
+            filter: Filter::SummedArea,
             split: 4,
             combine: Combine::Product,
             projection: Projection::Perspective,
@@ -107,10 +122,11 @@ impl OcclusionLayers {
         let limit = host.limits.storage_binding_bytes.min(host.limits.buffer_bytes);
         let needed = table_bytes(self);
         if needed > limit {
-            let most = limit / (needed / u64::from(self.slices));
+            let most =
+                (1..self.slices).rev().find(|slices| table_bytes(&Self { slices: *slices, ..self.clone() }) <= limit);
+            let fewer = most.map_or(String::new(), |most| format!("at most {most} slices, or "));
             let reason = format!(
-                "{} slices of {} texels a side take {needed} bytes, this device binds at most {limit}: take at most {most} slices, or a \
-                 smaller resolution",
+                "{} slices of {} texels a side take {needed} bytes, this device binds at most {limit}: take {fewer}a smaller resolution",
                 self.slices, self.resolution
             );
             return fail("resolution", reason);

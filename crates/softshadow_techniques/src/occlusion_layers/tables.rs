@@ -1,9 +1,9 @@
 //! From triangles to tables: which passes, and what they weigh.
 
-use softshadow_plan::{Kernel, Over, Plan, ResourceId};
+use softshadow_plan::{Kernel, Over, Plan, ResourceId, Values};
 
 use super::frame::{CasterRange, LayerFrame};
-use super::settings::OcclusionLayers;
+use super::settings::{Filter, OcclusionLayers};
 use crate::parts::scene_buffers;
 use crate::request::Request;
 
@@ -17,6 +17,19 @@ const SIZE_ROWS: Kernel = slicing("size_rows");
 const SLICE_ROWS: Kernel = slicing("slice_rows");
 const COUNT_WORDS: Kernel = Kernel { file: "occlusion_layers/sum_areas.wgsl", entry: "count_words" };
 const SUM_COLUMNS: Kernel = Kernel { file: "occlusion_layers/sum_areas.wgsl", entry: "sum_columns" };
+
+const EXPAND: Kernel = Kernel { file: "occlusion_layers/build_levels.wgsl", entry: "expand" };
+const BUILD_LEVEL: Kernel = Kernel { file: "occlusion_layers/build_levels.wgsl", entry: "build_level" };
+
+/// `LevelRange` of `build_levels.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct LevelRange {
+    level: u32,
+    reserved0: u32,
+    reserved1: u32,
+    reserved2: u32,
+}
 
 /// Bytes of `CasterBounds` of `casters.wgsl`.
 pub const CASTER_BOUNDS_BYTES: u64 = 48;
@@ -40,13 +53,18 @@ pub fn edge_on_share(bounds: &[u32]) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layers {
     pub(super) places: ResourceId,
-    pub(super) summed_areas: ResourceId,
+    pub(super) layer_tables: ResourceId,
 }
 
-/// Bytes of the summed-area tables.
+/// Bytes of the summed-area tables, or of all levels.
 pub(super) fn table_bytes(settings: &OcclusionLayers) -> u64 {
     let stride = u64::from(settings.resolution) + 1;
-    u64::from(settings.slices) * stride * stride * 4
+    match settings.filter {
+        Filter::SummedArea => u64::from(settings.slices) * stride * stride * 4,
+        Filter::Nbuffer | Filter::Mipmap => {
+            (0..=last_level(settings)).map(|level| level_entries(settings, level) * 4).sum()
+        }
+    }
 }
 
 /// Whether this stage makes the tables: they are kept from block to block where the light is the same in all.
@@ -59,11 +77,11 @@ pub(super) fn append(plan: &mut Plan, request: &Request<'_>, settings: &Occlusio
     let places = plan.persistent("layer places", LAYER_PLACES_BYTES);
     // Without casters nothing is looked up.
     let bytes = if request.scene.local.sub_scenes.is_empty() { 4 } else { table_bytes(settings) };
-    let summed_areas = plan.persistent("summed areas", bytes);
+    let layer_tables = plan.persistent("layer tables", bytes);
     if are_made(request) {
-        fill(plan, request, settings, frame, places, summed_areas);
+        fill(plan, request, settings, frame, places, layer_tables);
     }
-    Layers { places, summed_areas }
+    Layers { places, layer_tables }
 }
 
 fn fill(
@@ -72,7 +90,7 @@ fn fill(
     settings: &OcclusionLayers,
     frame: ResourceId,
     places: ResourceId,
-    summed_areas: ResourceId,
+    layer_tables: ResourceId,
 ) {
     let corners = scene_buffers::append_corners(plan, request.scene);
     let triangles = |index: usize| (request.scene.local.sub_scenes[index].corners.len() / 3) as u32;
@@ -128,7 +146,21 @@ fn fill(
             .bind("slice_bits", bits)
             .bind("tall", tall);
     }
-    let before = plan.buffer("words before", words);
+    match settings.filter {
+        Filter::SummedArea => append_sums(plan, settings, frame, bits, layer_tables),
+        Filter::Nbuffer | Filter::Mipmap => append_levels(plan, settings, frame, bits, layer_tables),
+    }
+}
+
+fn append_sums(
+    plan: &mut Plan,
+    settings: &OcclusionLayers,
+    frame: ResourceId,
+    bits: ResourceId,
+    layer_tables: ResourceId,
+) {
+    let rows = settings.slices * settings.resolution;
+    let before = plan.buffer("words before", u64::from(rows) * u64::from(settings.resolution / 32) * 4);
     let over = Over::Items { count: rows, work_per_item: settings.resolution / 128 + 1 };
     plan.compute("count words", "counts the bits of a row before each of its words", COUNT_WORDS, over)
         .bind("layer_frame", frame)
@@ -140,7 +172,56 @@ fn fill(
         .bind("layer_frame", frame)
         .bind("slice_bits", bits)
         .bind("words_before", before)
-        .bind("summed_areas", summed_areas);
+        .bind("layer_tables", layer_tables);
+}
+
+fn append_levels(
+    plan: &mut Plan,
+    settings: &OcclusionLayers,
+    frame: ResourceId,
+    bits: ResourceId,
+    layer_tables: ResourceId,
+) {
+    let entries = |level: u32| Over::Items { count: level_entries(settings, level) as u32, work_per_item: 1 };
+    plan.compute("expand level 0", "turns bits into shares, four slices a word", EXPAND, entries(0))
+        .bind("layer_frame", frame)
+        .bind("slice_bits", bits)
+        .bind("layer_tables", layer_tables);
+    for level in 1..=last_level(settings) {
+        let range = plan.parameter(level_label(level), size_of::<LevelRange>() as u64);
+        let why = "means over squares twice as wide, from four of the level below";
+        plan.compute(format!("build level {level}"), why, BUILD_LEVEL, entries(level))
+            .bind("layer_frame", frame)
+            .bind("level_range", range)
+            .bind("layer_tables", layer_tables);
+    }
+}
+
+/// The values of the parameters of levels.
+pub(super) fn level_values(settings: &OcclusionLayers, values: &mut Values) {
+    let levels = if settings.filter == Filter::SummedArea { 0 } else { last_level(settings) };
+    for level in 1..=levels {
+        let range = LevelRange { level, reserved0: 0, reserved1: 0, reserved2: 0 };
+        values.insert(level_label(level), bytemuck::bytes_of(&range).to_vec());
+    }
+}
+
+fn level_label(level: u32) -> String {
+    format!("level range {level}")
+}
+
+/// The level of a single texel.
+fn last_level(settings: &OcclusionLayers) -> u32 {
+    settings.resolution.ilog2()
+}
+
+/// Words of a level, of four slices each.
+fn level_entries(settings: &OcclusionLayers, level: u32) -> u64 {
+    let side = match settings.filter {
+        Filter::Mipmap => settings.resolution >> level,
+        Filter::SummedArea | Filter::Nbuffer => settings.resolution + (1 << level) - 1,
+    };
+    u64::from(settings.slices.div_ceil(4)) * u64::from(side) * u64::from(side)
 }
 
 /// Bytes of `LayerFrame`.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use softshadow_plan::{Over, Work, check};
 use softshadow_scene::{LightFrame, LightShape, LocalScene, Material, Mesh, SampleSpread, Scene};
 use softshadow_techniques::depth_complexity::OccluderUnit;
-use softshadow_techniques::occlusion_layers::Near;
+use softshadow_techniques::occlusion_layers::{Filter, Near};
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
     DepthComplexity, OccluderContents, OcclusionLayers, ReceiverSource, Request, SceneContents, Shading, Technique,
@@ -220,14 +220,27 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
             add("light parts".into(), 2 * 64 * 16 + 16 + 16);
             add("layer places".into(), 32 + 128 * 4);
             let has_casters = !sub_scenes.is_empty();
-            let table = slices * (resolution + 1) * (resolution + 1) * 4;
-            add("summed areas".into(), if has_casters { table } else { 4 });
+            // A sum before every texel and behind the last; or squares of 2^n texels, four slices a word: one at every 2^n-th texel, or
+            // every one that holds any.
+            let levels = u64::from(settings.resolution.ilog2());
+            let squares =
+                |side: &dyn Fn(u64) -> u64| (0..=levels).map(|n| side(n).pow(2)).sum::<u64>() * 4 * slices.div_ceil(4);
+            let table = match settings.filter {
+                Filter::SummedArea => slices * (resolution + 1) * (resolution + 1) * 4,
+                Filter::Nbuffer => squares(&|n| resolution - 1 + 2u64.pow(n as u32)),
+                Filter::Mipmap => squares(&|n| resolution / 2u64.pow(n as u32)),
+            };
+            add("layer tables".into(), if has_casters { table } else { 4 });
             if has_casters && request.opens_run {
                 add("caster range".into(), 128);
                 add("caster bounds".into(), 48);
                 // A bit a texel; a count a word.
                 add("slice bits".into(), slices * resolution * resolution / 8);
-                add("words before".into(), slices * resolution * resolution / 8);
+                if settings.filter == Filter::SummedArea {
+                    add("words before".into(), slices * resolution * resolution / 8);
+                } else {
+                    (1..=levels).for_each(|n| add(format!("level range {n}"), 16));
+                }
                 for (n, sub_scene) in sub_scenes.iter().enumerate() {
                     add(format!("tall triangles {n}"), 16 + sub_scene.corners.len() as u64 / 3 * 4);
                     add(format!("row dispatch {n}"), 12);

@@ -7,7 +7,7 @@ use softshadow_scene::{
     Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, SamplePattern, SampleSpread, Scene,
     look_at,
 };
-use softshadow_techniques::occlusion_layers::Near;
+use softshadow_techniques::occlusion_layers::{Filter, Near};
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
     Attenuation, Block, DepthComplexity, HardShadowMap, OccluderContents, OcclusionLayers, RayTraced, ReceiverSource,
@@ -205,6 +205,8 @@ pub(crate) fn techniques() -> Vec<Technique> {
         [layers(3, 64, 1, Near::Fade), layers(128, 128, 8, Near::Fade), layers(1, 256, 3, Near::Rays)]
             .map(Technique::OcclusionLayers),
     );
+    let filtered = |filter| OcclusionLayers { filter, ..layers(6, 64, 1, Near::Rays) };
+    all.extend([Filter::Nbuffer, Filter::Mipmap].map(|filter| Technique::OcclusionLayers(filtered(filter))));
     all
 }
 

@@ -21,7 +21,9 @@ pub(super) struct LayerFrame {
     pub(super) resolution: u32,
     /// Whether every slice is written into the next one, too.
     pub(super) successors: u32,
-    reserved: [u32; 3],
+    /// One of `FILTER_`.
+    pub(super) filter_kind: u32,
+    reserved: [u32; 2],
 }
 
 /// Where texels and slices are.

@@ -10,6 +10,7 @@ use super::kernel::{
     COMBINE_MAXIMUM, COMBINE_SUM, LayerView, LightParts, horizon_share, kernel_box, layer_view, way_to,
 };
 use super::layers::{LayerFrame, LayerPlaces};
+use super::levels::{FILTER_NBUFFER, FILTER_SUMMED_AREA, Level, MOST_LEVELS, levels, unpack};
 use crate::engine::{Call, atomic_words};
 use crate::kernels::lanes::{LANES, Vec3x8};
 use crate::kernels::shared::hierarchy::{BvhNode, box_pad, eight_reciprocals};
@@ -26,7 +27,8 @@ struct Layers<'a> {
     frame: LayerFrame,
     parts: LightParts,
     places: LayerPlaces,
-    sums: &'a [u32],
+    levels: [Level; MOST_LEVELS],
+    tables: &'a [u32],
 }
 
 /// Slices before a receiver, and the weight of the last of them.
@@ -39,7 +41,7 @@ struct SlicesBefore {
 
 impl Layers<'_> {
     /// Share of the box that the slice hides: the exact mean of its texels, nothing being outside of them.
-    fn hidden_share(&self, layer: u32, [begin, end]: [Vec2; 2]) -> f32 {
+    fn exact_share(&self, layer: u32, [begin, end]: [Vec2; 2]) -> f32 {
         let resolution = self.places.window.resolution;
         let stride = resolution as usize + 1;
         let (size, most) = (Vec2::splat(resolution as f32), Vec2::splat(resolution as f32 - 1.0));
@@ -49,7 +51,7 @@ impl Layers<'_> {
         let [c0, c1] = [low_texel, high_texel].map(|texel| texel.as_uvec2());
         let base = layer as usize * stride * stride;
         let row = |row: u32| {
-            let sums = &self.sums[base + row as usize * stride..][..stride];
+            let sums = &self.tables[base + row as usize * stride..][..stride];
             let [x0, x1] = [c0.x, c1.x].map(|x| x as usize);
             UVec4::new(sums[x0], sums[x0 + 1], sums[x1], sums[x1 + 1])
         };
@@ -60,6 +62,50 @@ impl Layers<'_> {
         let sum = (1.0 - low_share.y) * weights.dot(top) + weights.dot(middle) + high_share.y * weights.dot(bottom);
         let size = end - begin;
         (sum / (size.x * size.y)).clamp(0.0, 1.0)
+    }
+
+    /// The mean over the 2^level texels around a place, between the four entries next to it.
+    fn level_mean(&self, layer: u32, level: u32, middle: Vec2) -> f32 {
+        let Level { begin, side } = self.levels[level as usize];
+        let entries = &self.tables[begin + layer as usize / 4 * side * side..][..side * side];
+        let size = (1_u32 << level) as f32;
+        let is_nbuffer = self.frame.filter_kind == FILTER_NBUFFER;
+        let place = if is_nbuffer { middle + 0.5 * size - 1.0 } else { middle / size - 0.5 };
+        let bounded = place.clamp(Vec2::splat(-2.0), Vec2::splat(side as f32 + 1.0));
+        let low = bounded.floor();
+        let share = bounded - low;
+        let inside = |at: i32| usize::try_from(at).ok().filter(|at| *at < side);
+        let mut sum = 0.0;
+        for (row, row_weight) in [1.0 - share.y, share.y].into_iter().enumerate() {
+            for (column, column_weight) in [1.0 - share.x, share.x].into_iter().enumerate() {
+                let [x, y] = [low.x as i32 + column as i32, low.y as i32 + row as i32].map(inside);
+                if let (Some(x), Some(y)) = (x, y) {
+                    sum += unpack(entries[y * side + x])[layer as usize % 4] * column_weight * row_weight;
+                }
+            }
+        }
+        sum
+    }
+
+    /// As published: between the two levels next to the kernel's size. A kernel larger than all texels has what lies in all of them.
+    fn level_share(&self, layer: u32, [begin, end]: [Vec2; 2]) -> f32 {
+        let size = end - begin;
+        let wanted = (0.5 * (size.x * size.y).log2()).max(0.0);
+        let last = self.places.window.resolution.ilog2();
+        let level = (wanted as u32).min(last - 1);
+        let middle = (begin + end) * 0.5;
+        let share = (wanted - level as f32).clamp(0.0, 1.0);
+        let [finer, coarser] = [level, level + 1].map(|level| self.level_mean(layer, level, middle));
+        let mean = finer * (1.0 - share) + coarser * share;
+        mean * (-2.0 * (wanted - last as f32).max(0.0)).exp2()
+    }
+
+    fn hidden_share(&self, layer: u32, corners: [Vec2; 2]) -> f32 {
+        if self.frame.filter_kind == FILTER_SUMMED_AREA {
+            self.exact_share(layer, corners)
+        } else {
+            self.level_share(layer, corners)
+        }
     }
 
     fn slices_before(&self, depth: f32) -> SlicesBefore {
@@ -75,6 +121,17 @@ impl Layers<'_> {
                 let [plane, next] = [planes[low as usize - 1], planes[low as usize]];
                 before.last_weight = ((depth - plane) / (next - plane).max(1e-30)).clamp(0.0, 1.0);
             }
+        }
+        before
+    }
+
+    /// As above where rays find what is near. They pass the receiver's own slice and the one before it, whose casters were moved next to
+    /// the receiver, where the surface that it stands on goes on.
+    fn slices_beyond_rays(&self, depth: f32) -> SlicesBefore {
+        let mut before = self.slices_before(depth);
+        before.last_weight = 1.0;
+        if !before.is_behind_all {
+            before.count = before.count.saturating_sub(1);
         }
         before
     }
@@ -123,10 +180,10 @@ impl Layers<'_> {
             return Vec3::splat(if seen.inside { 1.0 } else { 0.0 });
         }
         let view = layer_view(&self.frame, self.places.window.inverse_distance, receiver.position);
-        let mut before = self.slices_before(view.at.z);
-        if blocked.is_some() {
-            before.last_weight = 1.0;
-        }
+        let before = match blocked {
+            Some(_) => self.slices_beyond_rays(view.at.z),
+            None => self.slices_before(view.at.z),
+        };
         let mut values = Vec3::ZERO;
         if let Some(hiding) = self.hiding_slices(&view, before) {
             for (k, (part, weight)) in self.parts.boxes().iter().zip(self.parts.weights()).enumerate() {
@@ -164,9 +221,10 @@ pub(super) fn look_up_beyond(call: &mut Call) {
 fn answer(call: &mut Call, blocked: Option<&[u32]>) {
     let items = call.item_range();
     let (light, frame, parts) = (call.uniform("light"), call.uniform("layer_frame"), call.uniform("light_parts"));
-    let [receivers, places, sums, visibility] =
-        call.buffers(["receivers", "layer_places", "summed_areas", "visibility"]);
-    let layers = Layers { light, frame, parts, places: records::<LayerPlaces>(places)[0], sums };
+    let [receivers, places, tables, visibility] =
+        call.buffers(["receivers", "layer_places", "layer_tables", "visibility"]);
+    let (places, levels) = (records::<LayerPlaces>(places)[0], levels(&frame));
+    let layers = Layers { light, frame, parts, places, levels, tables };
     let channels = layers.parts.channels as usize;
     let receivers = &records::<Receiver>(receivers)[items.clone()];
     let visibility = &mut visibility[items.start * channels..items.end * channels];
@@ -192,7 +250,8 @@ pub(super) fn trace_near(call: &mut Call) {
     let (light, frame, parts) = (call.uniform("light"), call.uniform("layer_frame"), call.uniform("light_parts"));
     let names = ["receivers", "layer_places", "nodes", "corners", "near_blocked", "near_counts"];
     let [receivers, places, nodes, corners, blocked, counts] = call.buffers(names);
-    let layers = Layers { light, frame, parts, places: records::<LayerPlaces>(places)[0], sums: &[] };
+    let (places, levels) = (records::<LayerPlaces>(places)[0], levels(&frame));
+    let layers = Layers { light, frame, parts, places, levels, tables: &[] };
     let near = Near { layers, nodes: records(nodes), triangles: records(corners) };
     let receivers = records::<Receiver>(receivers);
     let (blocked, counts) = (atomic_words(blocked), atomic_words(counts));
@@ -216,7 +275,7 @@ fn trace_run<S: Simd>(
     let seen = light_view(&layers.light, receiver.position);
     let window = &layers.places.window;
     let view = layer_view(&layers.frame, window.inverse_distance, receiver.position);
-    let before = layers.slices_before(view.at.z);
+    let before = layers.slices_beyond_rays(view.at.z);
     let is_asked = receiver.kind != RECEIVER_NONE && seen.exists && !seen.inside;
     if !is_asked || before.is_behind_all || window.slices == 0 {
         return;

@@ -1,9 +1,11 @@
 //! Twins of the kernels of `occlusion_layers`.
 
 mod bound_casters;
+mod build_levels;
 mod casters;
 mod kernel;
 mod layers;
+mod levels;
 mod look_up;
 mod outline;
 mod place_planes;
@@ -15,6 +17,8 @@ use super::Twin;
 pub(super) fn twin(file: &str, entry: &str) -> Option<Twin> {
     Some(match (file, entry) {
         ("bound_casters", "bound_casters") => bound_casters::bound_casters,
+        ("build_levels", "build_level") => build_levels::build_level,
+        ("build_levels", "expand") => build_levels::expand,
         ("look_up", "look_up") => look_up::look_up,
         ("look_up", "look_up_beyond") => look_up::look_up_beyond,
         ("look_up", "trace_near") => look_up::trace_near,

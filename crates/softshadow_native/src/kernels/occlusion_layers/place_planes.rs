@@ -29,7 +29,7 @@ pub(super) fn place_planes(call: &mut Call) {
     let size = fitted.max(Vec2::splat(1e-6));
     window.low = (low_across + high_across - size) * 0.5;
     window.texels = frame.resolution as f32 / size;
-    // Even in depth before the projection; the last plane a hair behind the farthest caster, which must not fall out by rounding.
+    // Even in depth before the projection. The last plane a hair behind the farthest caster, which must not fall out by rounding.
     let inverse = range.inverse_distance;
     let [near, far] = [low.z, high.z].map(|z| z / (1.0 - z * inverse));
     for (k, plane) in places.planes.iter_mut().take(frame.slices as usize).enumerate() {

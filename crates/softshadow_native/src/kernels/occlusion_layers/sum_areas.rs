@@ -25,7 +25,7 @@ pub(super) fn count_words(call: &mut Call) {
 pub(super) fn sum_columns(call: &mut Call) {
     let items = call.item_range();
     let frame: LayerFrame = call.uniform("layer_frame");
-    let [bits, before, sums] = call.buffers(["slice_bits", "words_before", "summed_areas"]);
+    let [bits, before, sums] = call.buffers(["slice_bits", "words_before", "layer_tables"]);
     let (bits, before) = (&*bits, &*before);
     let (resolution, words) = (frame.resolution as usize, frame.resolution as usize / 32);
     let stride = resolution + 1;
