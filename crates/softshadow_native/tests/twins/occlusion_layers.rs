@@ -56,18 +56,18 @@ fn settings_of_every_kind() {
     }
 }
 
-/// The filters of the paper: single slices, groups of four that are not full, kernels larger than all texels.
+/// The filters of the paper: a single slice, groups of four that are not full, kernels larger than all texels (of a fork below a wide sun).
 #[test]
 fn filters_for_comparison() {
-    for (filter, name, slices, near) in [
-        (Filter::Nbuffer, "canopy", 8, Near::Rays),
-        (Filter::Nbuffer, "fork", 5, Near::Fade),
-        (Filter::Mipmap, "canopy", 6, Near::Fade),
-        (Filter::Mipmap, "hall", 1, Near::Rays),
+    for (filter, name, slices, near, split) in [
+        (Filter::Nbuffer, "canopy", 8, Near::Rays, 2),
+        (Filter::Nbuffer, "fork", 5, Near::Fade, 1),
+        (Filter::Mipmap, "fork", 6, Near::Fade, 1),
+        (Filter::Mipmap, "hall", 1, Near::Rays, 2),
     ] {
-        let settings = OcclusionLayers { slices, resolution: 64, filter, near, split: 2, ..OcclusionLayers::default() };
+        let settings = OcclusionLayers { slices, resolution: 64, filter, near, split, ..OcclusionLayers::default() };
         let (scene, light, camera) = shipped(name, [40, 32]);
-        let wide = above(LightShape::Sun { angular_diameter: 0.6 }, 5.0).remove(0);
+        let wide = above(LightShape::Sun { angular_diameter: 2.4 }, 5.0).remove(0);
         Call::new(layers(settings), &scene, vec![light, wide], camera).compare(same);
     }
 }
