@@ -37,7 +37,7 @@ from .lights import DiscLight, Light, PolygonLight, RectLight, SphereLight, SunL
 from .picture import Picture, render
 from .scene import Mesh, Scene
 from .scene_file import SceneFile, from_trimesh, load
-from .techniques import DepthComplexity, HardShadowMap, PenumbraMap, RayTraced, Technique
+from .techniques import DepthComplexity, HardShadowMap, OcclusionLayers, PenumbraMap, RayTraced, Technique
 from .visibility import Visibility, visibility
 
 __all__ = [
@@ -57,6 +57,7 @@ __all__ = [
     "Mesh",
     "MissingExtra",
     "NoAdapterError",
+    "OcclusionLayers",
     "OutputError",
     "PenumbraMap",
     "Picture",

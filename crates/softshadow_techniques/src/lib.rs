@@ -5,6 +5,7 @@
 mod block;
 pub mod depth_complexity;
 pub mod hard_shadow_map;
+pub mod occlusion_layers;
 pub mod parts;
 pub mod penumbra_map;
 mod program;
@@ -20,6 +21,7 @@ use softshadow_scene::{Light, LightSamples, LightSampling, SampleSpread, SceneEr
 pub use block::{Block, blocks};
 pub use depth_complexity::{Attenuation, DepthComplexity};
 pub use hard_shadow_map::HardShadowMap;
+pub use occlusion_layers::OcclusionLayers;
 pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
 pub use parts::shading::Shading;
@@ -40,6 +42,8 @@ pub enum Technique {
     HardShadowMap(HardShadowMap),
     /// A shadow map, and beside it the penumbra of what it shows: fast, and too dark.
     PenumbraMap(PenumbraMap),
+    /// Slices of the scene, prefiltered: plausible, at a cost that hardly depends on scene and light.
+    OcclusionLayers(OcclusionLayers),
     /// Silhouette edges and counters: as accurate as rays to the same samples.
     DepthComplexity(DepthComplexity),
 }
@@ -72,6 +76,7 @@ impl Technique {
             Self::HardShadowMap(HardShadowMap::default()),
             Self::PenumbraMap(PenumbraMap::default()),
             Self::DepthComplexity(DepthComplexity::default()),
+            Self::OcclusionLayers(OcclusionLayers::default()),
         ]
     }
 
@@ -82,7 +87,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.rising_quality().map(Self::RayTraced).collect(),
             Self::DepthComplexity(settings) => settings.rising_quality().map(Self::DepthComplexity).collect(),
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) => Vec::new(),
+            Self::HardShadowMap(_) | Self::OcclusionLayers(_) | Self::PenumbraMap(_) => Vec::new(),
         }
     }
 
@@ -94,7 +99,7 @@ impl Technique {
             Self::RayTraced(_) | Self::DepthComplexity(_) => {
                 Some(spread::expected_error(self.samples(), self.passes()))
             }
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) => None,
+            Self::HardShadowMap(_) | Self::OcclusionLayers(_) | Self::PenumbraMap(_) => None,
         }
     }
 
@@ -105,6 +110,7 @@ impl Technique {
             Self::RayTraced(_) => "ray_traced",
             Self::HardShadowMap(_) => "hard_shadow_map",
             Self::PenumbraMap(_) => "penumbra_map",
+            Self::OcclusionLayers(_) => "occlusion_layers",
             Self::DepthComplexity(_) => "depth_complexity",
         }
     }
@@ -124,6 +130,7 @@ impl Technique {
             Self::RayTraced(settings) => settings.check(),
             Self::HardShadowMap(settings) => settings.check(),
             Self::PenumbraMap(settings) => settings.check(),
+            Self::OcclusionLayers(settings) => settings.check(),
             Self::DepthComplexity(settings) => settings.check(),
         }
     }
@@ -132,7 +139,7 @@ impl Technique {
     #[must_use]
     pub fn draws(&self) -> bool {
         match self {
-            Self::RayTraced(_) => false,
+            Self::RayTraced(_) | Self::OcclusionLayers(_) => false,
             Self::HardShadowMap(_) | Self::PenumbraMap(_) => true,
             Self::DepthComplexity(settings) => settings.evaluation == depth_complexity::Evaluation::Blended,
         }
@@ -156,6 +163,7 @@ impl Technique {
         match self {
             Self::PenumbraMap(settings) => settings.check_call(lights),
             Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
+            Self::OcclusionLayers(settings) => settings.check_call(host),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
     }
@@ -167,7 +175,7 @@ impl Technique {
     pub fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_scene(scene),
-            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionLayers(_) => Ok(()),
         }
     }
 
@@ -178,7 +186,7 @@ impl Technique {
     pub fn check_occluders(&self, occluders: &[Arc<OccluderContents>]) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_occluders(occluders),
-            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionLayers(_) => Ok(()),
         }
     }
 
@@ -193,6 +201,7 @@ impl Technique {
             Self::RayTraced(settings) => has_samples(&settings.sampling(0)),
             Self::DepthComplexity(settings) => has_samples(&settings.sampling(0)),
             Self::HardShadowMap(_) | Self::PenumbraMap(_) => Ok(()),
+            Self::OcclusionLayers(settings) => occlusion_layers::values(request, settings, light).map(drop),
         }
     }
 
@@ -202,7 +211,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.spread == SampleSpread::Interleaved,
             Self::DepthComplexity(settings) => settings.spread == SampleSpread::Interleaved,
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) => false,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionLayers(_) => false,
         }
     }
 
@@ -211,7 +220,7 @@ impl Technique {
     pub fn stages(&self) -> u32 {
         match self {
             Self::DepthComplexity(settings) => settings.stages(),
-            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) => 1,
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionLayers(_) => 1,
         }
     }
 
@@ -221,7 +230,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.passes,
             Self::DepthComplexity(settings) => settings.passes,
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) => 1,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionLayers(_) => 1,
         }
     }
 
@@ -231,7 +240,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.samples,
             Self::DepthComplexity(settings) => settings.samples,
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) => 1,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionLayers(_) => 1,
         }
     }
 
@@ -241,7 +250,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.halo_rows(),
             Self::DepthComplexity(settings) => settings.halo_rows(),
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) => 0,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionLayers(_) => 0,
         }
     }
 
@@ -252,6 +261,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes, is_semi_opaque),
             Self::HardShadowMap(_) | Self::PenumbraMap(_) => 4 * channels,
+            Self::OcclusionLayers(settings) => settings.bytes_per_receiver(channels),
             Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels, is_semi_opaque),
         }
     }
@@ -263,6 +273,7 @@ impl Technique {
             Self::RayTraced(settings) => ray_traced::plan(request, settings),
             Self::HardShadowMap(settings) => hard_shadow_map::plan(request, settings),
             Self::PenumbraMap(settings) => penumbra_map::plan(request, settings),
+            Self::OcclusionLayers(settings) => occlusion_layers::plan(request, settings),
             Self::DepthComplexity(settings) => depth_complexity::plan(request, settings),
         }
     }
@@ -276,6 +287,7 @@ impl Technique {
             Self::RayTraced(settings) => ray_traced::values(request, settings, light, pass),
             Self::HardShadowMap(settings) => hard_shadow_map::values(request, settings, light),
             Self::PenumbraMap(settings) => penumbra_map::values(request, settings, light),
+            Self::OcclusionLayers(settings) => occlusion_layers::values(request, settings, light),
             Self::DepthComplexity(settings) => depth_complexity::values(request, settings, light, pass),
         }
     }

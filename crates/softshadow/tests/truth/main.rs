@@ -25,6 +25,8 @@ mod interleaved;
 mod invariance;
 mod lights;
 mod moving;
+mod occlusion_layers;
+mod occlusion_layers_hard;
 mod penumbra_maps;
 mod pixels;
 mod same_samples;

@@ -1,7 +1,9 @@
 //! A handful of plans as text: what a change to a technique changes stands in the diff.
 
 use softshadow_techniques::penumbra_map::Ramp;
-use softshadow_techniques::{DepthComplexity, HardShadowMap, PenumbraMap, RayTraced, Request, Shading, Technique};
+use softshadow_techniques::{
+    DepthComplexity, HardShadowMap, OcclusionLayers, PenumbraMap, RayTraced, Request, Shading, Technique,
+};
 
 use crate::requests::Fixture;
 
@@ -47,6 +49,15 @@ fn penumbra_map_of_a_sphere() {
     let mut request = fixture.request_for(1, fixture.camera(), 2);
     request.wants.picture = Some(Shading::Modulated);
     let technique = Technique::PenumbraMap(PenumbraMap { resolution: 512, ramp: Ramp::Light });
+    insta::assert_snapshot!(technique.plan(&request));
+}
+
+#[test]
+fn occlusion_layers_of_two_sub_scenes() {
+    let fixture = Fixture::new();
+    let mut request = fixture.request(2, fixture.camera());
+    request.wants.picture = Some(Shading::Modulated);
+    let technique = Technique::OcclusionLayers(OcclusionLayers::default());
     insta::assert_snapshot!(technique.plan(&request));
 }
 
