@@ -121,6 +121,7 @@ CALLS = {
     "DiscLight": (ss.DiscLight, {"radius": 1.0, **POSED}),
     "HardShadowMap": (ss.HardShadowMap, vars(ss.HardShadowMap())),
     "Mesh": (ss.Mesh, vars(ss.Mesh(vertices=CARD, faces=SQUARE))),
+    "OcclusionLayers": (ss.OcclusionLayers, vars(ss.OcclusionLayers())),
     "PenumbraMap": (ss.PenumbraMap, vars(ss.PenumbraMap())),
     "PolygonLight": (ss.PolygonLight, {"outline": [[0, 0], [1, 0], [0, 1]], **POSED}),
     "RayTraced": (ss.RayTraced, vars(RAYS)),

@@ -148,8 +148,8 @@ impl LightAxes {
         let widest = corners.iter().map(across).fold(0.0, f64::max);
         let farthest = corners.iter().map(|c| c.z).fold(f64::NEG_INFINITY, f64::max);
         if self.kind == SPHERE && corners.iter().any(|c| across(c) * self.scale.x > STEEPEST * c.z) {
-            let reason = "this sphere light stands among the receivers or too near them to be sliced from one side; use ray_traced or \
-                          depth_complexity"
+            let reason = "this sphere light stands among the receivers or too near them to be sliced from one side; trace rays or \
+                          count edges"
                 .to_owned();
             return Err(TechniqueError::Setting { technique: NAME, setting: "light", reason });
         }

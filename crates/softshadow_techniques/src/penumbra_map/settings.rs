@@ -53,7 +53,7 @@ impl PenumbraMap {
             let hull = record::convex_hull(outline);
             if hull.len() > record::MOST_CORNERS {
                 return fail(format!(
-                    "the hull of polygon {index} has {} corners, and at most {} are drawn; use a disc, or ray_traced",
+                    "the hull of polygon {index} has {} corners, and at most {} are drawn; use a disc, or trace rays",
                     hull.len(),
                     record::MOST_CORNERS
                 ));

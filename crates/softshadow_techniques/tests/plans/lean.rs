@@ -177,7 +177,7 @@ fn layers_that_a_device_cannot_hold_are_refused_with_how_many_it_can() {
     let technique = Technique::OcclusionLayers(OcclusionLayers::default());
     let lamp = fixture.request_for(1, fixture.camera(), 5);
     let error = technique.values(&lamp, lamp.light, 0).unwrap_err().to_string();
-    assert!(error.contains("occlusion_layers light") && error.contains("ray_traced"), "{error}");
+    assert!(error.contains("occlusion_layers light") && error.contains("trace rays"), "{error}");
 }
 
 #[test]
