@@ -143,7 +143,7 @@ def render(
         Their contributions are added.
     camera : Camera
         The view.
-    technique : RayTraced, DepthComplexity, PenumbraMap, OcclusionCamera or HardShadowMap
+    technique : RayTraced, DepthComplexity, OcclusionCamera, OcclusionLayers, PenumbraMap or HardShadowMap
         How visibility is computed.
     shading : {"integrated", "modulated"}
         Light summed over the samples that are visible, or the unshadowed sum times visibility.

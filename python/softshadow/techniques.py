@@ -16,6 +16,7 @@ from .errors import SettingsError
 _DEFAULTS: dict[str, dict[str, Any]] = {row["name"]: row for row in json.loads(_core.technique_defaults())}
 _RAY_TRACED = _DEFAULTS["ray_traced"]
 _HARD_SHADOW_MAP = _DEFAULTS["hard_shadow_map"]
+_OCCLUSION_LAYERS = _DEFAULTS["occlusion_layers"]
 _PENUMBRA_MAP = _DEFAULTS["penumbra_map"]
 _OCCLUSION_CAMERA = _DEFAULTS["occlusion_camera"]
 _DEPTH_COMPLEXITY = _DEFAULTS["depth_complexity"]
@@ -110,6 +111,55 @@ class HardShadowMap(Technique):
 
     name: ClassVar[str] = "hard_shadow_map"
     resolution: int = _HARD_SHADOW_MAP["resolution"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OcclusionLayers(Technique):
+    """The scene as layers of bits, prefiltered (Eisemann and Décoret 2008, "occlusion textures").
+
+    Plausible soft shadows whose cost does not depend on the light's size and hardly on the scene: for foliage and for
+    tight budgets. What lies between the light and the receivers is cut into slices parallel to the light; the share of
+    each that hides the light is exact, and shares are multiplied as if slices knew nothing of each other. Shadows on
+    casters miss what is nearer than a slice, and surfaces that the light sees from the side vanish;
+    ``info["notes"]`` says so where it happens. Semi-opaque triangles are taken for opaque. Sphere lights among
+    the receivers are refused.
+
+    Parameters
+    ----------
+    slices : int
+        Slices of the scene, 1 to 128.
+    resolution : int
+        Texels a side of every slice: a power of two from 64 to 2048.
+    filter : {"summed_area", "nbuffer", "mipmap"}
+        How the share of a slice is found: exactly, or as published, for comparison.
+    split : int
+        Parts of the light a side, 1 to 8, in each of which slices are multiplied for themselves. 1 is the paper; more
+        are slower, and closer to the truth where slices hide the same part of the light.
+    combine : {"product", "maximum", "sum"}
+        How slices are put together; the maximum is never too dark, the sum never too bright.
+    projection : {"perspective", "parallel"}
+        From where the scene is projected onto its slices: a point behind the light, or straight along its emission.
+    near : {"fade", "rays"}
+        What lies between a receiver and the first slice before it: ignored, that slice fading in with depth, as
+        published; or found by a short ray to the middle of every part of the light.
+    repair_leaks : bool
+        Whether every slice is also written into the next one: closes gaps in thin surfaces, and thickens shadows.
+
+    Raises
+    ------
+    SettingsError
+        For a setting outside its range, and for slices that a device cannot hold.
+    """
+
+    name: ClassVar[str] = "occlusion_layers"
+    slices: int = _OCCLUSION_LAYERS["slices"]
+    resolution: int = _OCCLUSION_LAYERS["resolution"]
+    filter: str = _OCCLUSION_LAYERS["filter"]
+    split: int = _OCCLUSION_LAYERS["split"]
+    combine: str = _OCCLUSION_LAYERS["combine"]
+    projection: str = _OCCLUSION_LAYERS["projection"]
+    near: str = _OCCLUSION_LAYERS["near"]
+    repair_leaks: bool = _OCCLUSION_LAYERS["repair_leaks"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -254,7 +304,7 @@ class DepthComplexity(Technique):
 
 
 TECHNIQUES: dict[str, type[Technique]] = {
-    kind.name: kind for kind in (RayTraced, HardShadowMap, PenumbraMap, OcclusionCamera, DepthComplexity)
+    kind.name: kind for kind in (RayTraced, HardShadowMap, OcclusionCamera, OcclusionLayers, PenumbraMap, DepthComplexity)
 }
 """Every technique by its name."""
 

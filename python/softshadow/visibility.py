@@ -196,7 +196,7 @@ def visibility(
     normals : (n, 3) float, optional
         For each point, of any length but zero: light from below the horizon is then not visible. A flat light
         is never visible from behind.
-    technique : RayTraced, DepthComplexity, PenumbraMap, OcclusionCamera or HardShadowMap
+    technique : RayTraced, DepthComplexity, OcclusionCamera, OcclusionLayers, PenumbraMap or HardShadowMap
         How it is computed; ``RayTraced()`` unless an error or a time is asked for.
     max_error : float, optional
         Takes the fastest technique and settings that keep this error for this scene, instead of `technique`. The

@@ -122,6 +122,7 @@ CALLS = {
     "HardShadowMap": (ss.HardShadowMap, vars(ss.HardShadowMap())),
     "Mesh": (ss.Mesh, vars(ss.Mesh(vertices=CARD, faces=SQUARE))),
     "OcclusionCamera": (ss.OcclusionCamera, vars(ss.OcclusionCamera())),
+    "OcclusionLayers": (ss.OcclusionLayers, vars(ss.OcclusionLayers())),
     "PenumbraMap": (ss.PenumbraMap, vars(ss.PenumbraMap())),
     "PolygonLight": (ss.PolygonLight, {"outline": [[0, 0], [1, 0], [0, 1]], **POSED}),
     "RayTraced": (ss.RayTraced, vars(RAYS)),

@@ -35,7 +35,7 @@ UNITS = {
 # Numbers and arrays that have no unit: directions, counts, indices, ratios.
 UNITLESS = {"up", "normals", "faces", "samples", "seed", "passes", "probes", "base", "batches", "repeats"}
 UNITLESS |= {"roughness", "specular", "texture", "triangles", "srgb", "valid", "visible_samples", "device"}
-UNITLESS |= {"exact_area", "at_infinity", "channels", "steps", "bias"}
+UNITLESS |= {"exact_area", "at_infinity", "channels", "slices", "split", "steps", "bias"}
 # What raises nothing of its own, though it can be called.
 SAFE = {"doctor", "scenes.names", "Comparison.to_json", "Diagnosis.to_dict", "Technique.to_json"}
 

@@ -212,6 +212,10 @@ for kind, common in ((ss.RayTraced, {}), (ss.DepthComplexity, {"exact_area": Fal
     of_technique(kind, "spread", "decorrelated", **common)
     of_technique(kind, "tile", 2, spread="interleaved", **common)
 of_technique(ss.HardShadowMap, "resolution", 16)
+for name, other in {"slices": 3, "resolution": 64, "filter": "nbuffer", "split": 1, "combine": "maximum"}.items():
+    of_technique(ss.OcclusionLayers, name, other)
+for name, other in {"projection": "parallel", "near": "fade", "repair_leaks": True}.items():
+    of_technique(ss.OcclusionLayers, name, other)
 of_technique(ss.PenumbraMap, "resolution", 16)
 of_technique(ss.PenumbraMap, "ramp", "paper")
 of_technique(ss.OcclusionCamera, "resolution", 16)
@@ -235,7 +239,7 @@ for name, other in {"initial_counts": "z_fail", "counters": "float", "base": 256
 entry("RayTraced.probes", plan_of(ss.RayTraced), plan_of(ss.RayTraced, probes=8))
 entry("DepthComplexity.evaluation", plan_of(), plan_of(evaluation="blended"))
 entry("DepthComplexity.unit", plan_of(unit="edges"), plan_of(unit="triangles"))
-for kind in (ss.RayTraced, ss.HardShadowMap, ss.PenumbraMap, ss.OcclusionCamera, ss.DepthComplexity):
+for kind in (ss.RayTraced, ss.HardShadowMap, ss.OcclusionCamera, ss.OcclusionLayers, ss.PenumbraMap, ss.DepthComplexity):
     assert not inspect.signature(kind.to_json).parameters.keys() - {"self"}
 
 

@@ -368,7 +368,7 @@ def test_comparisons(scene):
 def test_defaults_are_those_of_the_library(scene, floor_points):
     from softshadow import _core  # noqa: TID251 - what the defaults are compared with
 
-    every = (ss.RayTraced, ss.HardShadowMap, ss.PenumbraMap, ss.OcclusionCamera, ss.DepthComplexity)
+    every = (ss.RayTraced, ss.HardShadowMap, ss.OcclusionCamera, ss.OcclusionLayers, ss.PenumbraMap, ss.DepthComplexity)
     kinds: dict[str, type[ss.Technique]] = {kind.name: kind for kind in every}
     for row in json.loads(_core.technique_defaults()):
         kind = kinds[row["name"]]

@@ -106,8 +106,13 @@ impl Info {
 /// What a result does not model of its scene and lights, and settings that a call cannot follow where it answers all the same, in words.
 pub(crate) fn notes(scene: &Scene, lights: &[Light], technique: &Technique, local: &LocalScene) -> Vec<String> {
     let semi_opaque = local.opacities.iter().filter(|opacity| **opacity < 1.0).count();
-    let maps =
-        matches!(technique, Technique::HardShadowMap(_) | Technique::PenumbraMap(_) | Technique::OcclusionCamera(_));
+    let maps = matches!(
+        technique,
+        Technique::HardShadowMap(_)
+            | Technique::PenumbraMap(_)
+            | Technique::OcclusionCamera(_)
+            | Technique::OcclusionLayers(_)
+    );
     let name = technique.name();
     let taken = (semi_opaque > 0 && maps)
         .then(|| format!("{semi_opaque} semi-opaque triangles taken for opaque: {name} knows no others"));
@@ -141,4 +146,18 @@ fn is_concave(shape: &LightShape) -> bool {
     };
     let turns = || (0..outline.len()).map(turn);
     turns().any(|t| t > 0.0) && turns().any(|t| t < 0.0)
+}
+
+/// From this share of the casters' area on, what is seen from the side is worth a word. Of surfaces that look everywhere alike 0.08 is.
+const MUCH_EDGE_ON: f64 = 0.2;
+
+/// What slices of the scene miss of a light's casters, where that is much.
+pub(crate) fn edge_on_note(light: usize, share: f64) -> Option<String> {
+    (share > MUCH_EDGE_ON).then(|| {
+        let percent = (share * 100.0).round();
+        format!(
+            "light {light} sees {percent} % of the area of what can hide it from the side, as walls under a lamp: slices do not hold it, \
+             so its shadows are too bright; use ray_traced or depth_complexity"
+        )
+    })
 }

@@ -47,10 +47,11 @@ pub use softshadow_scene::{
 pub use softshadow_techniques::depth_complexity::{
     Counters, Coverage, Evaluation, InitialCounts, OccluderUnit, Silhouettes,
 };
+pub use softshadow_techniques::occlusion_layers::{Combine, Filter, Near, Projection};
 pub use softshadow_techniques::penumbra_map::Ramp;
 pub use softshadow_techniques::{
-    Attenuation, CameraRamp, DepthComplexity, HardShadowMap, OcclusionCamera, PenumbraMap, RayTraced, Shading,
-    Technique, TechniqueError,
+    Attenuation, CameraRamp, DepthComplexity, HardShadowMap, OcclusionCamera, OcclusionLayers, PenumbraMap, RayTraced,
+    Shading, Technique, TechniqueError,
 };
 pub use visibility::{Options, Placed, SampleMasks, Visibility, visibility};
 

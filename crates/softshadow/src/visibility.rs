@@ -8,6 +8,7 @@ use softshadow_scene::{Light, LocalFrame, Receivers, Scene};
 use softshadow_techniques::depth_complexity::LIST_COUNTS;
 use softshadow_techniques::depth_complexity::blended::{LARGEST_COUNTS, Largest};
 use softshadow_techniques::occlusion_camera::{CAMERA_COUNTS, CameraCounts};
+use softshadow_techniques::occlusion_layers::{CASTER_BOUNDS, NEAR_COUNTS, edge_on_share};
 use softshadow_techniques::parts::VISIBILITY;
 use softshadow_techniques::parts::interleaving::NOISY_BYTES;
 use softshadow_techniques::parts::receivers::{RECEIVER_BYTES, RECEIVERS, Receiver};
@@ -22,7 +23,7 @@ use softshadow_techniques::{
 use crate::Progress;
 use crate::context::{Context, Device};
 use crate::error::Error;
-use crate::info::{Info, Preparation, notes};
+use crate::info::{Info, Preparation, edge_on_note, notes};
 use crate::scene_cache::Prepared;
 
 /// What a caller may want beside the values, and how much memory a call may take.
@@ -512,11 +513,20 @@ impl<'a> Collector<'a> {
             self.result.info.area_receivers += u64::from(counts[4]);
             self.overflowed += u64::from(counts[5]);
         }
+        if let Some(bytes) = outputs.get(NEAR_COUNTS) {
+            let counts = records::<u32>(bytes);
+            self.unfinished += u64::from(counts[1]);
+        }
+        if let Some(bytes) = outputs.get(CASTER_BOUNDS) {
+            let share = edge_on_share(&records::<u32>(bytes));
+            let note = edge_on_note(light, share).filter(|note| !self.result.info.notes.contains(note));
+            self.result.info.notes.extend(note);
+        }
         if let Some(bytes) = outputs.get(LARGEST_COUNTS) {
             self.astray += records::<Largest>(bytes).iter().map(|l| u64::from(l.astray)).sum::<u64>();
         }
         if let Some(bytes) = outputs.get(STRAYS) {
-            let counts: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+            let counts = records::<u32>(bytes);
             self.unmapped += counts.iter().map(|n| u64::from(*n)).sum::<u64>();
         }
         if let Some(bytes) = outputs.get(CAMERA_COUNTS) {

@@ -6,6 +6,7 @@ mod block;
 pub mod depth_complexity;
 pub mod hard_shadow_map;
 pub mod occlusion_camera;
+pub mod occlusion_layers;
 pub mod parts;
 pub mod penumbra_map;
 mod program;
@@ -22,6 +23,7 @@ pub use block::{Block, blocks};
 pub use depth_complexity::{Attenuation, DepthComplexity};
 pub use hard_shadow_map::HardShadowMap;
 pub use occlusion_camera::{CameraRamp, OcclusionCamera};
+pub use occlusion_layers::OcclusionLayers;
 pub use parts::occluder_buffers::OccluderContents;
 pub use parts::scene_buffers::SceneContents;
 pub use parts::shading::Shading;
@@ -44,6 +46,8 @@ pub enum Technique {
     PenumbraMap(PenumbraMap),
     /// Penumbrae from one camera at the light's centre, whose rays bend around silhouettes.
     OcclusionCamera(OcclusionCamera),
+    /// Slices of the scene, prefiltered: plausible, at a cost that hardly depends on scene and light.
+    OcclusionLayers(OcclusionLayers),
     /// Silhouette edges and counters: as accurate as rays to the same samples.
     DepthComplexity(DepthComplexity),
 }
@@ -77,6 +81,7 @@ impl Technique {
             Self::PenumbraMap(PenumbraMap::default()),
             Self::OcclusionCamera(OcclusionCamera::default()),
             Self::DepthComplexity(DepthComplexity::default()),
+            Self::OcclusionLayers(OcclusionLayers::default()),
         ]
     }
 
@@ -87,7 +92,9 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.rising_quality().map(Self::RayTraced).collect(),
             Self::DepthComplexity(settings) => settings.rising_quality().map(Self::DepthComplexity).collect(),
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => Vec::new(),
+            Self::HardShadowMap(_) | Self::OcclusionLayers(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => {
+                Vec::new()
+            }
         }
     }
 
@@ -99,7 +106,7 @@ impl Technique {
             Self::RayTraced(_) | Self::DepthComplexity(_) => {
                 Some(spread::expected_error(self.samples(), self.passes()))
             }
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => None,
+            Self::HardShadowMap(_) | Self::OcclusionLayers(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => None,
         }
     }
 
@@ -111,6 +118,7 @@ impl Technique {
             Self::HardShadowMap(_) => "hard_shadow_map",
             Self::PenumbraMap(_) => "penumbra_map",
             Self::OcclusionCamera(_) => "occlusion_camera",
+            Self::OcclusionLayers(_) => "occlusion_layers",
             Self::DepthComplexity(_) => "depth_complexity",
         }
     }
@@ -131,6 +139,7 @@ impl Technique {
             Self::HardShadowMap(settings) => settings.check(),
             Self::PenumbraMap(settings) => settings.check(),
             Self::OcclusionCamera(settings) => settings.check(),
+            Self::OcclusionLayers(settings) => settings.check(),
             Self::DepthComplexity(settings) => settings.check(),
         }
     }
@@ -139,7 +148,7 @@ impl Technique {
     #[must_use]
     pub fn draws(&self) -> bool {
         match self {
-            Self::RayTraced(_) => false,
+            Self::RayTraced(_) | Self::OcclusionLayers(_) => false,
             Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => true,
             Self::DepthComplexity(settings) => settings.evaluation == depth_complexity::Evaluation::Blended,
         }
@@ -164,6 +173,7 @@ impl Technique {
             Self::PenumbraMap(settings) => settings.check_call(lights),
             Self::OcclusionCamera(settings) => settings.check_call(lights, host),
             Self::DepthComplexity(settings) => settings.check_call(receivers, lights, host),
+            Self::OcclusionLayers(settings) => settings.check_call(host),
             Self::RayTraced(_) | Self::HardShadowMap(_) => Ok(()),
         }
     }
@@ -175,7 +185,11 @@ impl Technique {
     pub fn check_scene(&self, scene: &SceneContents) -> Result<(), TechniqueError> {
         match self {
             Self::DepthComplexity(settings) => settings.check_scene(scene),
-            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => Ok(()),
+            Self::RayTraced(_)
+            | Self::HardShadowMap(_)
+            | Self::PenumbraMap(_)
+            | Self::OcclusionCamera(_)
+            | Self::OcclusionLayers(_) => Ok(()),
         }
     }
 
@@ -187,7 +201,7 @@ impl Technique {
         match self {
             Self::DepthComplexity(settings) => settings.check_occluders(occluders),
             Self::OcclusionCamera(settings) => settings.check_occluders(occluders.iter().map(Arc::as_ref)),
-            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) => Ok(()),
+            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionLayers(_) => Ok(()),
         }
     }
 
@@ -202,6 +216,7 @@ impl Technique {
             Self::RayTraced(settings) => has_samples(&settings.sampling(0)),
             Self::DepthComplexity(settings) => has_samples(&settings.sampling(0)),
             Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => Ok(()),
+            Self::OcclusionLayers(settings) => occlusion_layers::values(request, settings, light).map(drop),
         }
     }
 
@@ -211,7 +226,9 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.spread == SampleSpread::Interleaved,
             Self::DepthComplexity(settings) => settings.spread == SampleSpread::Interleaved,
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => false,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) | Self::OcclusionLayers(_) => {
+                false
+            }
         }
     }
 
@@ -220,7 +237,11 @@ impl Technique {
     pub fn stages(&self) -> u32 {
         match self {
             Self::DepthComplexity(settings) => settings.stages(),
-            Self::RayTraced(_) | Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 1,
+            Self::RayTraced(_)
+            | Self::HardShadowMap(_)
+            | Self::PenumbraMap(_)
+            | Self::OcclusionCamera(_)
+            | Self::OcclusionLayers(_) => 1,
         }
     }
 
@@ -230,7 +251,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.passes,
             Self::DepthComplexity(settings) => settings.passes,
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 1,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) | Self::OcclusionLayers(_) => 1,
         }
     }
 
@@ -240,7 +261,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.samples,
             Self::DepthComplexity(settings) => settings.samples,
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 1,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) | Self::OcclusionLayers(_) => 1,
         }
     }
 
@@ -250,7 +271,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.halo_rows(),
             Self::DepthComplexity(settings) => settings.halo_rows(),
-            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 0,
+            Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) | Self::OcclusionLayers(_) => 0,
         }
     }
 
@@ -261,6 +282,7 @@ impl Technique {
         match self {
             Self::RayTraced(settings) => settings.bytes_per_receiver(channels, sub_scenes, is_semi_opaque),
             Self::HardShadowMap(_) | Self::PenumbraMap(_) | Self::OcclusionCamera(_) => 4 * channels,
+            Self::OcclusionLayers(settings) => settings.bytes_per_receiver(channels),
             Self::DepthComplexity(settings) => settings.bytes_per_receiver(channels, is_semi_opaque),
         }
     }
@@ -273,6 +295,7 @@ impl Technique {
             Self::HardShadowMap(settings) => hard_shadow_map::plan(request, settings),
             Self::PenumbraMap(settings) => penumbra_map::plan(request, settings),
             Self::OcclusionCamera(settings) => occlusion_camera::plan(request, settings),
+            Self::OcclusionLayers(settings) => occlusion_layers::plan(request, settings),
             Self::DepthComplexity(settings) => depth_complexity::plan(request, settings),
         }
     }
@@ -287,6 +310,7 @@ impl Technique {
             Self::HardShadowMap(settings) => hard_shadow_map::values(request, settings, light),
             Self::PenumbraMap(settings) => penumbra_map::values(request, settings, light),
             Self::OcclusionCamera(settings) => occlusion_camera::values(request, settings, light),
+            Self::OcclusionLayers(settings) => occlusion_layers::values(request, settings, light),
             Self::DepthComplexity(settings) => depth_complexity::values(request, settings, light, pass),
         }
     }

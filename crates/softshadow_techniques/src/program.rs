@@ -82,6 +82,7 @@ impl VisibilityProgram<'_> {
             opens_block: opens_pass && task.light == 0 && task.pass == 0,
             first_light: task.light == 0,
             opens_run: opens_pass && task.block == 0 && task.light == 0 && task.pass == 0,
+            only_light: self.lights.len() == 1,
             closes_light: last_pass,
             closes_block: last_pass && task.light + 1 == self.lights.len(),
             stage: task.stage,

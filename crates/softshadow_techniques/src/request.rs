@@ -69,6 +69,8 @@ pub struct Request<'a> {
     pub first_light: bool,
     /// This is the first block: what serves all blocks is drawn.
     pub opens_run: bool,
+    /// The call has no other light: what is made for it where the run opens can be kept for all blocks.
+    pub only_light: bool,
     /// This is the light's last pass: results leave.
     pub closes_light: bool,
     /// This is the block's last pass: the picture leaves.

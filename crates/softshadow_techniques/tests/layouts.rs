@@ -16,6 +16,9 @@ use softshadow_techniques::depth_complexity::{
     AttenuationScale, ClusterRange, CoverSettings, FoldSettings, FrameRecord, SampleBins, TouchingRange,
 };
 use softshadow_techniques::occlusion_camera::{self, CameraCounts, CameraLight};
+use softshadow_techniques::occlusion_layers::{
+    CASTER_BOUNDS_BYTES, CasterRange, LAYER_PLACES_BYTES, LayerFrame, LevelRange, LightParts,
+};
 use softshadow_techniques::parts::interleaving::InterleavingRecord;
 use softshadow_techniques::parts::light_buffers::{LightRecord, Sampling};
 use softshadow_techniques::parts::light_silhouettes::{EdgeCorners, LIGHT_SILHOUETTE_BYTES};
@@ -52,6 +55,10 @@ const PAIRS: &[Pair] = &[
     ("BvhNode", size_of::<BvhNode>(), "ray_traced/hierarchy.wgsl", "BvhNode"),
     ("Corner", size_of::<Corner>(), "shared/triangle.wgsl", "Corner"),
     ("ProbeImage", size_of::<ProbeImage>(), "ray_traced/choose.wgsl", "ProbeImage"),
+    ("LayerFrame", size_of::<LayerFrame>(), "occlusion_layers/layers.wgsl", "LayerFrame"),
+    ("CasterRange", size_of::<CasterRange>(), "occlusion_layers/casters.wgsl", "CasterRange"),
+    ("LevelRange", size_of::<LevelRange>(), "occlusion_layers/build_levels.wgsl", "LevelRange"),
+    ("LightParts", size_of::<LightParts>(), "occlusion_layers/kernel.wgsl", "LightParts"),
     ("ShadowView", size_of::<ShadowView>(), "shared/shadow_view.wgsl", "ShadowView"),
     ("PenumbraLight", size_of::<PenumbraLight>(), "penumbra_map/light.wgsl", "PenumbraLight"),
     ("MapLayer", size_of::<MapLayer>(), "penumbra_map/light.wgsl", "MapLayer"),
@@ -116,8 +123,9 @@ fn layout(body: &str) -> Layout {
             "f32" | "u32" => 4,
             "[f32; 2]" => 8,
             "[f32; 3]" => 12,
-            "[u32; 4]" => 16,
-            "[[u32; 4]; 64]" | "[[f32; 4]; MOST_CORNERS]" => 64 * 16,
+            "[u32; 4]" | "[f32; 4]" => 16,
+            "[[f32; 4]; 4]" => 4 * 16,
+            "[[u32; 4]; 64]" | "[[f32; 4]; 64]" | "[[f32; 4]; MOST_CORNERS]" => 64 * 16,
             "[[f32; 2]; MOST_CORNERS]" => 64 * 8,
             "[ShadowView; 6]" => 6 * size_of::<ShadowView>() as u32,
             other => panic!("teach this test the size of '{other}'"),
@@ -158,6 +166,21 @@ fn every_uploaded_struct_lies_as_its_twin() {
         tested.insert(name);
     }
     assert_eq!(tested, found.iter().map(|(name, _)| *name).collect(), "a new struct needs a row in this test");
+}
+
+#[test]
+fn layers_lie_as_plans_say() {
+    assert_eq!(u64::from(twin("occlusion_layers/casters.wgsl", "CasterBounds").bytes), CASTER_BOUNDS_BYTES);
+    assert_eq!(u64::from(twin("occlusion_layers/layers.wgsl", "LayerPlaces").bytes), LAYER_PLACES_BYTES);
+    // What the front door reads of the bounds: the words after three lows, three highs and the count.
+    let bounds = twin("occlusion_layers/casters.wgsl", "CasterBounds");
+    let offset = |name: &str| bounds.members.iter().find(|(member, _)| member == name).map(|(_, at)| *at);
+    assert_eq!((offset("edge_on"), offset("area")), (Some(7 * 4), Some(8 * 4)));
+    let words = [1, 2, 3, 4, 5, 6, 7, 30, 120, 9];
+    assert_eq!(softshadow_techniques::occlusion_layers::edge_on_share(&words), 0.25);
+    assert_eq!(softshadow_techniques::occlusion_layers::edge_on_share(&[0; 12]), 0.0);
+    let text = shader("occlusion_layers/look_up.wgsl");
+    assert_eq!(constant(text, "RAYS"), Some(8), "runs of rays are counted by the plan");
 }
 
 #[test]

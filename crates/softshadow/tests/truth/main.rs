@@ -26,6 +26,8 @@ mod invariance;
 mod lights;
 mod moving;
 mod occlusion_camera;
+mod occlusion_layers;
+mod occlusion_layers_hard;
 mod penumbra_maps;
 mod pixels;
 mod same_samples;

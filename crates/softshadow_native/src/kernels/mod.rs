@@ -7,6 +7,7 @@
 
 mod depth_complexity;
 mod lanes;
+mod occlusion_layers;
 mod ray_traced;
 mod receivers;
 mod resolve;
@@ -36,6 +37,7 @@ pub(crate) fn twin(kernel: Kernel) -> Option<Twin> {
     let (folder, file) = file.strip_suffix(".wgsl")?.split_once('/')?;
     match folder {
         "depth_complexity" => depth_complexity::twin(file, entry),
+        "occlusion_layers" => occlusion_layers::twin(file, entry),
         "ray_traced" => ray_traced::twin(file, entry),
         "receivers" => receivers::twin(file, entry),
         "resolve" => resolve::twin(file, entry),

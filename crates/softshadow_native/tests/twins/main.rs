@@ -5,6 +5,7 @@ mod covered;
 mod fold;
 mod harness;
 mod lists;
+mod occlusion_layers;
 mod one_kernel;
 mod ray_traced;
 mod receivers;

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use softshadow_plan::{Over, Work, check};
 use softshadow_scene::{LightFrame, LightShape, LocalScene, Material, Mesh, SampleSpread, Scene};
 use softshadow_techniques::depth_complexity::OccluderUnit;
+use softshadow_techniques::occlusion_layers::{Filter, Near};
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::{
-    DepthComplexity, HardShadowMap, OccluderContents, PenumbraMap, ReceiverSource, Request, SceneContents, Shading,
-    Technique,
+    DepthComplexity, HardShadowMap, OccluderContents, OcclusionLayers, PenumbraMap, ReceiverSource, Request,
+    SceneContents, Shading, Technique,
 };
 
 use crate::requests::{Fixture, POINTS, stage, techniques};
@@ -120,11 +121,16 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
     // The occlusion camera draws nothing where nothing has a silhouette.
     let is_bare = matches!(technique, Technique::OcclusionCamera(_)) && hidden_by(request)[1] == 0;
     for (n, sub_scene) in sub_scenes.iter().enumerate() {
-        // Silhouettes need no corners: they are there for the camera alone.
-        if !technique.wants_occluders() || technique.draws() && !is_bare || request.opens_block && camera {
+        // Silhouettes need no corners, and layers none once they are made: then they are there for the camera alone.
+        let has_all = match technique {
+            Technique::OcclusionLayers(settings) => request.opens_run || settings.near == Near::Rays,
+            _ => !technique.wants_occluders() || technique.draws() && !is_bare,
+        };
+        if has_all || request.opens_block && camera {
             add(format!("corners {n}"), sub_scene.corners.len() as u64 / 3 * 48);
         }
-        if matches!(technique, Technique::RayTraced(_)) {
+        let traces_near = matches!(technique, Technique::OcclusionLayers(settings) if settings.near == Near::Rays);
+        if traces_near || matches!(technique, Technique::RayTraced(_)) {
             add(format!("hierarchy {n}"), sub_scene.nodes.len() as u64 * 32);
         }
     }
@@ -259,6 +265,44 @@ fn counted(technique: &Technique, request: &Request<'_>) -> BTreeMap<String, u64
                 }
             }
         }
+        Technique::OcclusionLayers(settings) => {
+            let (slices, resolution) = (u64::from(settings.slices), u64::from(settings.resolution));
+            add("layer frame".into(), 80);
+            // Boxes and weights of at most 64 parts, the whole light, and four words.
+            add("light parts".into(), 2 * 64 * 16 + 16 + 16);
+            add("layer places".into(), 32 + 128 * 4);
+            let has_casters = !sub_scenes.is_empty();
+            // A sum before every texel and behind the last; or squares of 2^n texels, four slices a word: one at every 2^n-th texel, or
+            // every one that holds any.
+            let levels = u64::from(settings.resolution.ilog2());
+            let squares =
+                |side: &dyn Fn(u64) -> u64| (0..=levels).map(|n| side(n).pow(2)).sum::<u64>() * 4 * slices.div_ceil(4);
+            let table = match settings.filter {
+                Filter::SummedArea => slices * (resolution + 1) * (resolution + 1) * 4,
+                Filter::Nbuffer => squares(&|n| resolution - 1 + 2u64.pow(n as u32)),
+                Filter::Mipmap => squares(&|n| resolution / 2u64.pow(n as u32)),
+            };
+            add("layer tables".into(), if has_casters { table } else { 4 });
+            if has_casters && request.opens_run {
+                add("caster range".into(), 128);
+                add("caster bounds".into(), 48);
+                // A bit a texel; a count a word.
+                add("slice bits".into(), slices * resolution * resolution / 8);
+                if settings.filter == Filter::SummedArea {
+                    add("words before".into(), slices * resolution * resolution / 8);
+                } else {
+                    (1..=levels).for_each(|n| add(format!("level range {n}"), 16));
+                }
+                for (n, sub_scene) in sub_scenes.iter().enumerate() {
+                    add(format!("tall triangles {n}"), 16 + sub_scene.corners.len() as u64 / 3 * 4);
+                    add(format!("row dispatch {n}"), 12);
+                }
+            }
+            if has_casters && settings.near == Near::Rays {
+                add("near blocked".into(), count * 8);
+                add("near counts".into(), 8);
+            }
+        }
         _ => panic!("count the bytes of '{}' here", technique.name()),
     }
     if sampled.is_some() || picture {
@@ -317,13 +361,20 @@ fn a_block_is_sized_by_what_a_receiver_takes() {
                     let words = u64::from(settings.samples.div_ceil(32));
                     4 * words + 4 + 24 * scene as u64 + 8 * u64::from(channels) + noisy(technique)
                 }
+                Technique::OcclusionLayers(OcclusionLayers { near: Near::Rays, .. }) => 4 * u64::from(channels) + 8,
                 _ => 4 * u64::from(channels),
+            };
+            // Without casters there is nothing near, either.
+            let spared = if scene == 0 && !matches!(technique, Technique::RayTraced(_)) {
+                expected - 4 * u64::from(channels)
+            } else {
+                0
             };
             let sub_scenes = request.scene.local.sub_scenes.len() as u64;
             assert_eq!(sub_scenes, scene as u64);
             assert_eq!(technique.bytes_per_receiver(u64::from(channels), sub_scenes, false), expected, "{technique:?}");
             // The receiver and its point take 32 bytes each.
-            assert_eq!(total(5) - total(1), 4 * (64 + expected), "{technique:?} in {sub_scenes} sub-scenes");
+            assert_eq!(total(5) - total(1), 4 * (64 + expected - spared), "{technique:?} in {sub_scenes} sub-scenes");
             let one_more = technique.bytes_per_receiver(u64::from(channels), sub_scenes + 1, false);
             assert_eq!(one_more - expected, if matches!(technique, Technique::RayTraced(_)) { 24 } else { 0 });
         }
@@ -442,8 +493,8 @@ fn what_passes_to_samples_is_sized_where_triangles_are_semi_opaque() {
             _ => 0,
         };
         assert_eq!(of(true) - of(false) + grown(2), grown(3) + area, "{technique:?}");
-        let maps = ["hard_shadow_map", "penumbra_map", "occlusion_camera"];
-        let samples = if maps.contains(&technique.name()) { 0 } else { u64::from(technique.samples()) };
+        let is_sampled = matches!(technique, Technique::RayTraced(_) | Technique::DepthComplexity(_));
+        let samples = if is_sampled { u64::from(technique.samples()) } else { 0 };
         assert_eq!(of(true) - of(false), 4 * samples);
     }
 }

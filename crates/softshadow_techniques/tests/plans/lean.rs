@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 
 use softshadow_plan::{Origin, Over, Plan, VertexSource, Work};
 use softshadow_scene::{Camera, Light, LightShape};
+use softshadow_techniques::occlusion_layers::Near;
 use softshadow_techniques::{
-    DepthComplexity, HardShadowMap, OcclusionCamera, PenumbraMap, RayTraced, ReceiverSource, Request, Shading,
-    Technique, Wants,
+    DepthComplexity, HardShadowMap, OcclusionCamera, OcclusionLayers, PenumbraMap, RayTraced, ReceiverSource, Request,
+    Shading, Technique, Wants,
 };
 
 use crate::requests::{Fixture, SIZE, stage, techniques};
@@ -150,6 +151,68 @@ fn the_occlusion_camera_draws_maps_where_there_are_casters_alone() {
             assert!(bytes <= 32, "{}: {bytes}", pass.label);
         }
     }
+}
+
+#[test]
+fn layers_are_made_once_a_call_and_looked_up_by_every_block() {
+    let fixture = Fixture::new();
+    let fade = OcclusionLayers { near: Near::Fade, ..OcclusionLayers::default() };
+    let technique = Technique::OcclusionLayers(fade);
+    let request = fixture.request(1, fixture.points());
+    let plan = technique.plan(&request);
+    let made = [
+        "no casters",
+        "bound casters 0",
+        "place planes",
+        "empty slices",
+        "no tall triangles 0",
+        "slice triangles 0",
+        "size rows 0",
+        "slice rows 0",
+        "count words",
+        "sum columns",
+    ];
+    assert_eq!(labels(&plan), [&["place points"], &made[..], &["look up"]].concat());
+    assert_eq!(outputs(&plan), ["caster bounds", "visibility", "receivers"]);
+    assert_eq!((rasters(&plan), plan.find("hierarchy 0")), (0, None));
+    for label in ["sampling", "light samples", "sample radiance", "materials", "color", "near blocked"] {
+        assert_eq!(plan.find(label), None, "{label}");
+    }
+    // The same light for the next block: what is there is looked up.
+    let next = Request { opens_run: false, ..request };
+    assert_eq!(labels(&technique.plan(&next)), ["place points", "look up"]);
+    // Another light has been there in between.
+    let several = Request { only_light: false, ..next };
+    assert_eq!(labels(&technique.plan(&several)), labels(&plan));
+    // Without casters there is nothing to slice and nothing near.
+    let near = Technique::OcclusionLayers(OcclusionLayers::default());
+    assert_eq!(labels(&near.plan(&fixture.request(0, fixture.points()))), ["place points", "look up"]);
+    let with_rays = near.plan(&request);
+    let added: Vec<&str> = labels(&with_rays).into_iter().filter(|l| !labels(&plan).contains(l)).collect();
+    assert_eq!(added, ["nothing near", "no near rays", "trace near 0"]);
+}
+
+#[test]
+fn layers_that_a_device_cannot_hold_are_refused_with_how_many_it_can() {
+    let fixture = Fixture::new();
+    let host = softshadow_plan::Host::default();
+    for (slices, resolution, words) in
+        [(31, 1024, None), (32, 1024, Some("at most 31 slices")), (8, 2048, Some("at most 7"))]
+    {
+        let technique =
+            Technique::OcclusionLayers(OcclusionLayers { slices, resolution, ..OcclusionLayers::default() });
+        assert_eq!(technique.check(), Ok(()));
+        let refused = technique.check_call(fixture.points(), &fixture.lights, &host).err().map(|e| e.to_string());
+        match words {
+            None => assert_eq!(refused, None),
+            Some(words) => assert!(refused.as_ref().is_some_and(|text| text.contains(words)), "{refused:?}"),
+        }
+    }
+    // A sphere among the receivers is refused, and told so for whichever light of a call it is.
+    let technique = Technique::OcclusionLayers(OcclusionLayers::default());
+    let lamp = fixture.request_for(1, fixture.camera(), 5);
+    let error = technique.values(&lamp, lamp.light, 0).unwrap_err().to_string();
+    assert!(error.contains("occlusion_layers light") && error.contains("trace rays"), "{error}");
 }
 
 #[test]

@@ -48,7 +48,8 @@ fn refused(storage_buffers: u32) -> BTreeSet<&'static str> {
 fn plans_run_on_core_webgpu_and_need_all_of_its_storage_buffers() {
     assert_eq!(refused(CORE.storage_buffers), BTreeSet::new());
     assert_eq!(refused(CORE.storage_buffers - 1), BTreeSet::from(["depth_complexity", "ray_traced"]));
-    let all = ["depth_complexity", "hard_shadow_map", "occlusion_camera", "penumbra_map", "ray_traced"];
+    let all =
+        ["depth_complexity", "hard_shadow_map", "occlusion_camera", "occlusion_layers", "penumbra_map", "ray_traced"];
     assert_eq!(refused(2), BTreeSet::from(all));
 }
 

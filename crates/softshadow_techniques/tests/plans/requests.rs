@@ -7,11 +7,12 @@ use softshadow_scene::{
     Camera, Light, LightShape, LightTexture, LocalScene, Material, Mesh, Points, SamplePattern, SampleSpread, Scene,
     look_at,
 };
+use softshadow_techniques::occlusion_layers::{Filter, Near};
 use softshadow_techniques::parts::occluder_buffers::boundary_of;
 use softshadow_techniques::penumbra_map::Ramp;
 use softshadow_techniques::{
-    Attenuation, Block, CameraRamp, DepthComplexity, HardShadowMap, OccluderContents, OcclusionCamera, PenumbraMap,
-    RayTraced, ReceiverSource, Request, SceneContents, Shading, Technique, Wants,
+    Attenuation, Block, CameraRamp, DepthComplexity, HardShadowMap, OccluderContents, OcclusionCamera, OcclusionLayers,
+    PenumbraMap, RayTraced, ReceiverSource, Request, SceneContents, Shading, Technique, Wants,
 };
 
 /// Width and height of the grid's images.
@@ -98,6 +99,7 @@ impl Fixture {
             opens_block: true,
             first_light: true,
             opens_run: true,
+            only_light: true,
             closes_light: true,
             closes_block: true,
             stage: 0,
@@ -119,7 +121,12 @@ impl Fixture {
             let served =
                 |receivers: &ReceiverSource<'_>| technique.check_call(*receivers, &[], &Host::default()).is_ok();
             for receivers in [self.camera(), self.points()].into_iter().filter(served) {
-                let has_all = |index: &usize| !asks || *index < self.occluders[scene].len();
+                // And without lights that it refuses.
+                let takes = |index: usize| {
+                    let request = self.request_for(scene, receivers, index);
+                    !asks && technique.values(&request, request.light, 0).is_ok()
+                };
+                let has_all = |index: &usize| takes(*index) || asks && *index < self.occluders[scene].len();
                 for index in (0..self.lights.len()).filter(has_all) {
                     // A picture shows a material, and without triangles there is none: the front door asks for no such plan.
                     let pictures = [None, Some(Shading::Integrated), Some(Shading::Modulated)];
@@ -191,6 +198,19 @@ pub(crate) fn techniques() -> Vec<Technique> {
     all.push(Technique::PenumbraMap(PenumbraMap { resolution: 300, ramp: Ramp::Paper }));
     let bent = OcclusionCamera { resolution: 48, steps: 1, bias: 0.0, ramp: CameraRamp::Bernstein };
     all.push(Technique::OcclusionCamera(bent));
+    let layers = |slices, resolution, split, near| OcclusionLayers {
+        slices,
+        resolution,
+        split,
+        near,
+        ..OcclusionLayers::default()
+    };
+    all.extend(
+        [layers(3, 64, 1, Near::Fade), layers(128, 128, 8, Near::Fade), layers(1, 256, 3, Near::Rays)]
+            .map(Technique::OcclusionLayers),
+    );
+    let filtered = |filter| OcclusionLayers { filter, ..layers(6, 64, 1, Near::Rays) };
+    all.extend([Filter::Nbuffer, Filter::Mipmap].map(|filter| Technique::OcclusionLayers(filtered(filter))));
     all
 }
 

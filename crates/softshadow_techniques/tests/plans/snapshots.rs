@@ -2,7 +2,8 @@
 
 use softshadow_techniques::penumbra_map::Ramp;
 use softshadow_techniques::{
-    DepthComplexity, HardShadowMap, OcclusionCamera, PenumbraMap, RayTraced, Request, Shading, Technique,
+    DepthComplexity, HardShadowMap, OcclusionCamera, OcclusionLayers, PenumbraMap, RayTraced, Request, Shading,
+    Technique,
 };
 
 use crate::requests::Fixture;
@@ -57,6 +58,15 @@ fn occlusion_camera_points() {
     let fixture = Fixture::new();
     let technique = Technique::OcclusionCamera(OcclusionCamera { resolution: 512, ..OcclusionCamera::default() });
     insta::assert_snapshot!(technique.plan(&fixture.request(1, fixture.points())));
+}
+
+#[test]
+fn occlusion_layers_of_two_sub_scenes() {
+    let fixture = Fixture::new();
+    let mut request = fixture.request(2, fixture.camera());
+    request.wants.picture = Some(Shading::Modulated);
+    let technique = Technique::OcclusionLayers(OcclusionLayers::default());
+    insta::assert_snapshot!(technique.plan(&request));
 }
 
 fn silhouettes(samples: u32) -> Technique {
