@@ -37,7 +37,15 @@ from .lights import DiscLight, Light, PolygonLight, RectLight, SphereLight, SunL
 from .picture import Picture, render
 from .scene import Mesh, Scene
 from .scene_file import SceneFile, from_trimesh, load
-from .techniques import DepthComplexity, HardShadowMap, OcclusionCamera, OcclusionLayers, PenumbraMap, RayTraced, Technique
+from .techniques import (
+    DepthComplexity,
+    HardShadowMap,
+    OcclusionCamera,
+    OcclusionLayers,
+    PenumbraMap,
+    RayTraced,
+    Technique,
+)
 from .visibility import Visibility, visibility
 
 __all__ = [

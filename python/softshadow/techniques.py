@@ -304,7 +304,8 @@ class DepthComplexity(Technique):
 
 
 TECHNIQUES: dict[str, type[Technique]] = {
-    kind.name: kind for kind in (RayTraced, HardShadowMap, OcclusionCamera, OcclusionLayers, PenumbraMap, DepthComplexity)
+    kind.name: kind
+    for kind in (RayTraced, HardShadowMap, OcclusionCamera, OcclusionLayers, PenumbraMap, DepthComplexity)
 }
 """Every technique by its name."""
 

@@ -239,7 +239,14 @@ for name, other in {"initial_counts": "z_fail", "counters": "float", "base": 256
 entry("RayTraced.probes", plan_of(ss.RayTraced), plan_of(ss.RayTraced, probes=8))
 entry("DepthComplexity.evaluation", plan_of(), plan_of(evaluation="blended"))
 entry("DepthComplexity.unit", plan_of(unit="edges"), plan_of(unit="triangles"))
-for kind in (ss.RayTraced, ss.HardShadowMap, ss.OcclusionCamera, ss.OcclusionLayers, ss.PenumbraMap, ss.DepthComplexity):
+for kind in (
+    ss.RayTraced,
+    ss.HardShadowMap,
+    ss.OcclusionCamera,
+    ss.OcclusionLayers,
+    ss.PenumbraMap,
+    ss.DepthComplexity,
+):
     assert not inspect.signature(kind.to_json).parameters.keys() - {"self"}
 
 
