@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _core, backends, extras
+from .checks import flag
 from .errors import NoAdapterError, SettingsError
 from .logs import adapter_words
 
@@ -93,7 +94,7 @@ def doctor(*, measure: bool = False) -> Diagnosis:
         advice.append(f"SOFTSHADOW_DEVICE={os.environ['SOFTSHADOW_DEVICE']} overrides device='auto'")
     if all(adapter["backend"] == "gl" for adapter in adapters):
         advice.append(f"{_NO_DRIVER if not adapters else _ONLY_GL}; {driver_command(_os_release())}")
-    trials = [trial.to_dict() for trial in backends.matrix()] if measure else []
+    trials = [trial.to_dict() for trial in backends.matrix()] if flag("measure", measure) else []
     return Diagnosis(
         version=_core.__version__,
         adapters=adapters,

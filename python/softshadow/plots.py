@@ -23,8 +23,7 @@ _BEHIND_POINTS = "lightsteelblue"
 
 def picture(shown: Picture, axes: Any) -> Any:
     """The picture on axes of its own, or on those given."""
-    if axes is None:
-        axes = _pyplot().subplots(layout="constrained")[1]
+    axes = _pyplot().subplots(layout="constrained")[1] if axes is None else _checked(axes)
     axes.imshow(shown.srgb)
     axes.set_axis_off()
     return axes
@@ -37,7 +36,7 @@ def visibility(shown: Visibility, axes: Any) -> Any:
         _, grid = _pyplot().subplots(1, lights, squeeze=False, layout="constrained", figsize=(6.4 * lights, 4.8))
         row = grid[0]
     elif lights == 1:
-        row = np.array([axes])
+        row = np.array([_checked(axes)])
     else:
         raise SettingsError(f"axes: one light fits on given axes, not {lights}; leave them out")
     for one, values, name in zip(row, by_light(shown, shown.values), shown.light_names, strict=True):
@@ -63,6 +62,12 @@ def _scattered(axes: Any, points: NDArray[np.float64], values: NDArray[np.float3
     axes.set(xlabel="xyz"[across], ylabel="xyz"[up], aspect="equal", facecolor=_BEHIND_POINTS)
     colors = {"c": values} if values.shape[1] == 3 else {"c": values[:, 0], **_GREY}
     return axes.scatter(points[:, across], points[:, up], s=4, **colors)
+
+
+def _checked(axes: Any) -> Any:
+    if not isinstance(axes, needed("plot", "plot", "matplotlib.axes").Axes):
+        raise SettingsError(f"axes: matplotlib Axes expected, got {axes!r:.80}")
+    return axes
 
 
 def _pyplot() -> Any:

@@ -172,6 +172,8 @@ CALLS = {
         {"scene": SCENE, "lights": [LIGHT], "points": CARD, "normals": FLOOR + 1.0, "technique": RAYS, **CALL}
         | {"camera": None, "standard_error": True, "receivers": True, "sample_masks": True, **NO_GOAL},
     ),
+    "Visibility.plot": (RESULT.plot, {"axes": None}),
+    "Picture.plot": (PICTURE.plot, {"axes": None}),
     "Visibility.save": (RESULT.save, {"path": "seen.png"}),
     "Picture.save": (PICTURE.save, {"path": "seen.exr"}),
 }

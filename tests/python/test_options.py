@@ -112,13 +112,13 @@ of_visibility("standard_error", with_option(standard_error=False), lambda result
 of_visibility("receivers", with_option(receivers=True), lambda result: result.positions)
 of_visibility("sample_masks", with_option(sample_masks=True), lambda result: result.visible_samples)
 GOAL: dict[str, Any] = {"technique": None, "max_error": 0.05}
-of_visibility("max_error", with_option(**GOAL), lambda result: result.info["choice"])
-of_visibility("max_ms", with_option(technique=None, max_ms=1e6), lambda result: result.info["choice"])
-for name, other in (("error_norm", "p99"), ("confidence", 0.8)):
+of_visibility("max_error", with_option(**GOAL), lambda result: result.info.get("choice"))
+of_visibility("max_ms", with_option(technique=None, max_ms=1e6), lambda result: result.info.get("choice"))
+for name, said, other in (("error_norm", "norm", "p99"), ("confidence", "confidence", 0.8)):
     entry(
         f"visibility({name})",
-        lambda: with_option(**GOAL)().info["choice"]["goal"],
-        lambda name=name, other=other: with_option(**GOAL, **{name: other})().info["choice"]["goal"],
+        lambda said=said: with_option(**GOAL)().info["choice"][said],
+        lambda name=name, said=said, other=other: with_option(**GOAL, **{name: other})().info["choice"][said],
     )
 entry(
     "visibility(normals)",

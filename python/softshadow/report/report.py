@@ -94,8 +94,9 @@ class Report:
         Raises
         ------
         OutputError
-            Where the folder cannot be made or written to.
+            For what names no folder, and where it cannot be made or written to.
         """
+        path = folder_of(folder)
         document = self.to_dict()
         files: dict[str, bytes] = {}
         for comparison in document["comparisons"]:
@@ -105,13 +106,24 @@ class Report:
         files["report.json"] = (json.dumps(document, indent=1, allow_nan=False) + "\n").encode()
         # Last, so that a page is never older than its numbers.
         files["index.html"] = page(document, self.comparisons).encode()
-        path = Path(folder)
         try:
             path.mkdir(parents=True, exist_ok=True)
             for name, content in files.items():
                 (path / name).write_bytes(content)
         except OSError as error:
             raise OutputError(f"{os.fspath(folder)}: {error.strerror or error}") from error
+
+
+def folder_of(folder: object) -> Path:
+    """A path that names a folder."""
+    try:
+        path = Path(os.fsdecode(folder))  # type: ignore[arg-type]
+        os.fsencode(path)
+    except (TypeError, UnicodeError):
+        raise OutputError(f"folder: a path expected, got {folder!r:.80}") from None
+    if "\0" in str(path):
+        raise OutputError(f"folder: a path without null characters expected, got {folder!r:.80}")
+    return path
 
 
 def _identities(comparisons: Sequence[Comparison]) -> list[str]:

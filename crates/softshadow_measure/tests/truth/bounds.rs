@@ -79,6 +79,8 @@ fn bounds_hold_in_nineteen_of_twenty_draws_and_stay_close() {
             // 400 rounds: three standard errors are 0.033. What is rare and gross is known to be the hard case.
             let least = if name == "gross" { 0.89 } else { 0.917 };
             assert!(coverage >= least, "{name} {norm}: {coverage}");
+            // Its percentile lies where its law breaks off: 1.81 times the truth.
+            let widest = if name == "gross" { 1.9 } else { widest };
             assert!(width < widest, "{name} {norm}: {width}");
         }
     }
@@ -125,8 +127,9 @@ fn nothing_bounds_the_largest_error() {
         bound_error(ErrorNorm::Max, &population.drawn(400, &mut Random::new(9)), 0.5, 0.95).unwrap();
     assert_eq!(found.upper, None);
     assert!(found.estimate < population.true_norm(ErrorNorm::Max));
-    // Three in four hundred.
-    assert!((found.exceeding_share - 0.00746).abs() < 1e-4, "{}", found.exceeding_share);
+    // None of 400 drawn from 20,000, which count as 408 of any number: with a chance of 0.05 none of so many is beyond.
+    let share = 1.0 - 0.05_f64.powf(0.98 / 400.0);
+    assert!((found.exceeding_share - share).abs() < 1e-5, "{} {share}", found.exceeding_share);
 }
 
 #[test]
