@@ -71,7 +71,9 @@ pub(crate) fn plan(request: &Request<'_>, settings: &OcclusionLayers) -> Plan {
     let visibility = plan.persistent(VISIBILITY, count as u64 * 4 * u64::from(request.channels));
     let near = (settings.near == Near::Rays && !request.scene.local.sub_scenes.is_empty())
         .then(|| append_near(&mut plan, request, settings, [light, frame, parts, receivers, layers.places]));
-    let over = Over::Items { count: count as u32, work_per_item: settings.split * settings.split * settings.slices };
+    // A lookup is sixteen loads: a fourth of a ray at most.
+    let lookups = settings.split * settings.split * settings.slices;
+    let over = Over::Items { count: count as u32, work_per_item: lookups.div_ceil(4) };
     let kernel = if near.is_some() { LOOK_UP_BEYOND } else { LOOK_UP };
     let pass = plan.compute("look up", "puts the slices before each receiver together", kernel, over);
     pass.bind("light", light)
