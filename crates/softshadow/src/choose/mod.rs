@@ -4,11 +4,11 @@
 //! 1. **Candidates** are the settings that techniques list in rising quality ([`Technique::rising_quality`]).
 //! 2. **Costs** are predicted from their plans and a calibration of the device ([`calibration`]), corrected by what the same scene has cost
 //!    before.
-//! 3. **A pilot** ([`pilot`]) lets one setting of each technique do a random part of the receivers: it says what this scene costs, and, where
+//! 3. **A pilot** (`pilot`) lets one setting of each technique do a random part of the receivers: it says what this scene costs, and, where
 //!    there is time for rays, how wrong the technique is here. Each part of it runs where all together are expected to take less than a third
 //!    of the run that follows; else the choice is safe: among techniques whose error follows from their samples, with a larger margin.
 //! 4. **The run.**
-//! 5. **A check** ([`check`]): receivers drawn at random from the result itself are traced, each with samples of its own, and bound its
+//! 5. **A check** (`check`): receivers drawn at random from the result itself are traced, each with samples of its own, and bound its
 //!    error. Nothing that led to the choice enters here, so nothing has to be corrected for how many candidates there were; only checks
 //!    that were not passed count, and share the risk: a half for the first, a half of the rest for the next, and so on.
 //! 6. What is not confirmed is checked with more receivers where it looks right, else computed again by the next setting that should do.
