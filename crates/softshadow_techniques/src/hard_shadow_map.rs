@@ -16,13 +16,12 @@
 
 use serde::{Deserialize, Serialize};
 use softshadow_plan::{Kernel, Over, Plan, Values};
-use softshadow_scene::{Light, LightSampling, SamplePattern};
+use softshadow_scene::Light;
 
 use crate::TechniqueError;
 use crate::parts::VISIBILITY;
-use crate::parts::light_buffers::{self, Sampling};
-use crate::parts::shading::{self, Seen};
-use crate::parts::{receivers, shadow_views};
+use crate::parts::light_buffers::LightRecord;
+use crate::parts::{receivers, seen_values, shadow_views};
 use crate::request::Request;
 
 /// Settings of `hard_shadow_map`.
@@ -41,9 +40,6 @@ impl Default for HardShadowMap {
 
 const LOOK_UP: Kernel = Kernel { file: "hard_shadow_map/look_up.wgsl", entry: "look_up" };
 
-/// Light samples of the unshadowed light in a picture.
-const SHADING_SAMPLES: u32 = 64;
-
 impl HardShadowMap {
     pub(crate) fn check(&self) -> Result<(), TechniqueError> {
         if (16..=16_384).contains(&self.resolution) {
@@ -59,7 +55,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &HardShadowMap) -> Plan {
     let mut plan = Plan::new("hard shadow map");
     let count = request.block.count;
     let receivers = receivers::append(&mut plan, request);
-    let light = plan.parameter("light", size_of::<light_buffers::LightRecord>() as u64);
+    let light = plan.parameter("light", size_of::<LightRecord>() as u64);
     let bytes = count as u64 * 4 * u64::from(request.channels);
     let visibility = plan.persistent(VISIBILITY, bytes);
     let maps = shadow_views::append(&mut plan, request, settings.resolution);
@@ -70,29 +66,13 @@ pub(crate) fn plan(request: &Request<'_>, settings: &HardShadowMap) -> Plan {
         .bind("depth_map", maps.depth)
         .bind("receivers", receivers)
         .bind("visibility", visibility);
-    if request.wants.picture.is_some() {
-        let sampling = plan.parameter("sampling", size_of::<Sampling>() as u64);
-        let samples = plan.parameter("light samples", u64::from(SHADING_SAMPLES) * 16);
-        let buffers = light_buffers::LightBuffers { light, sampling, samples };
-        shading::append(&mut plan, request, receivers, &buffers, Seen::Values(visibility), &shading_samples());
-    }
-    plan.outputs.push(visibility);
-    plan.outputs.extend(request.opens_block.then_some(receivers));
+    seen_values::append(&mut plan, request, receivers, light, visibility);
     plan
 }
 
 /// The values of the plan's parameters for one light.
 pub(crate) fn values(request: &Request<'_>, settings: &HardShadowMap, light: &Light) -> Result<Values, TechniqueError> {
-    let mut values = Values::new();
-    receivers::values(request, &mut values);
-    light_buffers::values(request, light, &shading_samples(), &mut values)?;
-    let sampling = Sampling::new(request, &shading_samples(), 0, 1);
-    values.insert("sampling".into(), bytemuck::bytes_of(&sampling).to_vec());
+    let mut values = seen_values::values(request, light)?;
     shadow_views::values(request, settings.resolution, &mut values);
-    shading::values(request, 1, &mut values);
     Ok(values)
-}
-
-fn shading_samples() -> LightSampling {
-    LightSampling::correlated(SamplePattern::Stratified, SHADING_SAMPLES, 0)
 }

@@ -37,16 +37,15 @@ use softshadow_plan::{
     Blend, ColorTarget, Compare, Count, DepthTarget, Host, Kernel, Origin, Over, Plan, Raster, RasterKernel,
     ResourceId, Shape, TextureFormat, Values, VertexSource,
 };
-use softshadow_scene::{Light, LightSampling, LightShape, SamplePattern};
+use softshadow_scene::{Light, LightShape};
 
 use crate::TechniqueError;
 use crate::parts::VISIBILITY;
-use crate::parts::light_buffers::{self, LightBuffers, Sampling};
+use crate::parts::light_buffers::LightRecord;
 use crate::parts::light_silhouettes::{self, LightSilhouettes};
 use crate::parts::occluder_buffers::OccluderContents;
-use crate::parts::receivers;
-use crate::parts::shading::{self, Seen};
 use crate::parts::shadow_views::{self, ShadowMaps};
+use crate::parts::{receivers, seen_values};
 use crate::request::Request;
 
 /// Settings of `occlusion_camera`.
@@ -94,9 +93,6 @@ const MOST_CORNERS: usize = 64;
 const QUAD_CORNERS: u32 = 6;
 /// Two textures of four floats, for each side of the hard shadow.
 const MAP_LAYERS: u32 = 4;
-/// Light samples of the unshadowed light in a picture.
-const SHADING_SAMPLES: u32 = 64;
-
 const LOOK_UP: Kernel = Kernel { file: "occlusion_camera/look_up.wgsl", entry: "look_up" };
 const LOOK_UP_OPEN: Kernel = Kernel { file: "occlusion_camera/look_up.wgsl", entry: "look_up_open" };
 
@@ -215,7 +211,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &OcclusionCamera) -> Plan {
     let mut plan = Plan::new("occlusion camera");
     let count = request.block.count;
     let receivers = receivers::append(&mut plan, request);
-    let light = plan.parameter("light", size_of::<light_buffers::LightRecord>() as u64);
+    let light = plan.parameter("light", size_of::<LightRecord>() as u64);
     let camera_light = plan.parameter("camera light", size_of::<CameraLight>() as u64);
     let visibility = plan.persistent(VISIBILITY, count as u64 * 4 * u64::from(request.channels));
     let over = |work| Over::Items { count: count as u32, work_per_item: work };
@@ -247,14 +243,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &OcclusionCamera) -> Plan {
                 .bind("visibility", visibility);
         }
     }
-    if request.wants.picture.is_some() {
-        let sampling = plan.parameter("sampling", size_of::<Sampling>() as u64);
-        let samples = plan.parameter("light samples", u64::from(SHADING_SAMPLES) * 16);
-        let buffers = LightBuffers { light, sampling, samples };
-        shading::append(&mut plan, request, receivers, &buffers, Seen::Values(visibility), &shading_samples());
-    }
-    plan.outputs.push(visibility);
-    plan.outputs.extend(request.opens_block.then_some(receivers));
+    seen_values::append(&mut plan, request, receivers, light, visibility);
     plan
 }
 
@@ -312,11 +301,7 @@ pub(crate) fn values(
     settings: &OcclusionCamera,
     light: &Light,
 ) -> Result<Values, TechniqueError> {
-    let mut values = Values::new();
-    receivers::values(request, &mut values);
-    light_buffers::values(request, light, &shading_samples(), &mut values)?;
-    let sampling = Sampling::new(request, &shading_samples(), 0, 1);
-    values.insert("sampling".into(), bytemuck::bytes_of(&sampling).to_vec());
+    let mut values = seen_values::values(request, light)?;
     shadow_views::values(request, settings.resolution, &mut values);
     light_silhouettes::values(QUAD_CORNERS, &mut values);
     values.insert("camera light".into(), bytemuck::bytes_of(&camera_light(request, settings, light)).to_vec());
@@ -324,7 +309,6 @@ pub(crate) fn values(
         let record = MapLayer { layer, reserved0: 0, reserved1: 0, reserved2: 0 };
         values.insert(layer_label(layer), bytemuck::bytes_of(&record).to_vec());
     }
-    shading::values(request, 1, &mut values);
     Ok(values)
 }
 
@@ -375,8 +359,4 @@ fn camera_light(request: &Request<'_>, settings: &OcclusionCamera, light: &Light
         reserved: 0,
         corners: listed,
     }
-}
-
-fn shading_samples() -> LightSampling {
-    LightSampling::correlated(SamplePattern::Stratified, SHADING_SAMPLES, 0)
 }

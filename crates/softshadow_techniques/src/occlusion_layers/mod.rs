@@ -32,7 +32,7 @@ mod settings;
 mod tables;
 
 use softshadow_plan::{Kernel, Over, Plan, ResourceId, Values};
-use softshadow_scene::{Light, LightSampling, SamplePattern};
+use softshadow_scene::Light;
 
 pub use frame::{CasterRange, LayerFrame};
 pub use light_parts::LightParts;
@@ -42,9 +42,8 @@ pub use tables::{CASTER_BOUNDS, CASTER_BOUNDS_BYTES, LAYER_PLACES_BYTES, LevelRa
 
 use crate::TechniqueError;
 use crate::parts::VISIBILITY;
-use crate::parts::light_buffers::{self, LightBuffers, LightRecord, Sampling};
-use crate::parts::shading::{self, Seen};
-use crate::parts::{receivers, scene_buffers};
+use crate::parts::light_buffers::LightRecord;
+use crate::parts::{receivers, scene_buffers, seen_values};
 use crate::request::Request;
 
 const LOOK_UP: Kernel = Kernel { file: "occlusion_layers/look_up.wgsl", entry: "look_up" };
@@ -55,9 +54,6 @@ const TRACE_NEAR: Kernel = Kernel { file: "occlusion_layers/look_up.wgsl", entry
 const RAYS: u32 = 8;
 /// Label of how many runs of short rays were traced, and how many rays a driver cut short.
 pub const NEAR_COUNTS: &str = "near counts";
-
-/// Light samples of the unshadowed light in a picture.
-const SHADING_SAMPLES: u32 = 64;
 
 /// Slices, tables, then a lookup a receiver.
 pub(crate) fn plan(request: &Request<'_>, settings: &OcclusionLayers) -> Plan {
@@ -86,14 +82,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &OcclusionLayers) -> Plan {
     if let Some(near) = near {
         pass.bind("near_blocked", near);
     }
-    if request.wants.picture.is_some() {
-        let sampling = plan.parameter("sampling", size_of::<Sampling>() as u64);
-        let samples = plan.parameter("light samples", u64::from(SHADING_SAMPLES) * 16);
-        let buffers = LightBuffers { light, sampling, samples };
-        shading::append(&mut plan, request, receivers, &buffers, Seen::Values(visibility), &shading_samples());
-    }
-    plan.outputs.push(visibility);
-    plan.outputs.extend(request.opens_block.then_some(receivers));
+    seen_values::append(&mut plan, request, receivers, light, visibility);
     plan
 }
 
@@ -136,11 +125,7 @@ pub(crate) fn values(
     settings: &OcclusionLayers,
     light: &Light,
 ) -> Result<Values, TechniqueError> {
-    let mut values = Values::new();
-    receivers::values(request, &mut values);
-    light_buffers::values(request, light, &shading_samples(), &mut values)?;
-    let sampling = Sampling::new(request, &shading_samples(), 0, 1);
-    values.insert("sampling".into(), bytemuck::bytes_of(&sampling).to_vec());
+    let mut values = seen_values::values(request, light)?;
     let axes = frame::LightAxes::new(request, light);
     values.insert("layer frame".into(), bytemuck::bytes_of(&axes.record(settings)).to_vec());
     if tables::are_made(request) {
@@ -150,10 +135,5 @@ pub(crate) fn values(
     }
     let parts = LightParts::new(light, &axes, settings, request.channels);
     values.insert("light parts".into(), bytemuck::bytes_of(&parts).to_vec());
-    shading::values(request, 1, &mut values);
     Ok(values)
-}
-
-fn shading_samples() -> LightSampling {
-    LightSampling::correlated(SamplePattern::Stratified, SHADING_SAMPLES, 0)
 }

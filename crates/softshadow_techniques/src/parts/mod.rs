@@ -9,6 +9,7 @@ pub(crate) mod pattern_name;
 pub mod receivers;
 pub mod resolve;
 pub mod scene_buffers;
+pub(crate) mod seen_values;
 pub mod shading;
 pub mod shadow_views;
 pub(crate) mod spread;

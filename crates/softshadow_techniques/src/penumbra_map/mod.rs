@@ -33,15 +33,14 @@ use softshadow_plan::{
     Compare, Count, DepthTarget, Kernel, Origin, Over, Plan, Raster, RasterKernel, ResourceId, Shape, TextureFormat,
     Values, VertexSource,
 };
-use softshadow_scene::{Light, LightSampling, LightShape, SamplePattern};
+use softshadow_scene::{Light, LightShape};
 
 use crate::TechniqueError;
 use crate::parts::VISIBILITY;
-use crate::parts::light_buffers::{self, Sampling};
+use crate::parts::light_buffers::LightRecord;
 use crate::parts::occluder_buffers::OccluderContents;
-use crate::parts::shading::{self, Seen};
 use crate::parts::shadow_views::{self, ShadowMaps};
-use crate::parts::{light_silhouettes, receivers};
+use crate::parts::{light_silhouettes, receivers, seen_values};
 use crate::request::Request;
 pub use record::{MapLayer, PenumbraLight};
 pub use settings::{PenumbraMap, Ramp};
@@ -58,9 +57,6 @@ pub const HULL_CORNERS: u32 = 12;
 
 /// Bytes of `LookUpCounts`.
 const COUNT_BYTES: u64 = 4;
-
-/// Light samples of the unshadowed light in a picture.
-const SHADING_SAMPLES: u32 = 64;
 
 fn draw_kernel(shape: &LightShape) -> RasterKernel {
     let (vertex, fragment) = match shape {
@@ -83,7 +79,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &PenumbraMap) -> Plan {
     let mut plan = Plan::new("penumbra map");
     let count = request.block.count;
     let receivers = receivers::append(&mut plan, request);
-    let light = plan.parameter("light", size_of::<light_buffers::LightRecord>() as u64);
+    let light = plan.parameter("light", size_of::<LightRecord>() as u64);
     let bytes = count as u64 * 4 * u64::from(request.channels);
     let visibility = plan.persistent(VISIBILITY, bytes);
     let over = Over::Items { count: count as u32, work_per_item: 1 };
@@ -115,14 +111,7 @@ pub(crate) fn plan(request: &Request<'_>, settings: &PenumbraMap) -> Plan {
             plan.outputs.push(strays);
         }
     }
-    if request.wants.picture.is_some() {
-        let sampling = plan.parameter("sampling", size_of::<Sampling>() as u64);
-        let samples = plan.parameter("light samples", u64::from(SHADING_SAMPLES) * 16);
-        let buffers = light_buffers::LightBuffers { light, sampling, samples };
-        shading::append(&mut plan, request, receivers, &buffers, Seen::Values(visibility), &shading_samples());
-    }
-    plan.outputs.push(visibility);
-    plan.outputs.extend(request.opens_block.then_some(receivers));
+    seen_values::append(&mut plan, request, receivers, light, visibility);
     plan
 }
 
@@ -167,11 +156,7 @@ fn layer_label(layer: u32) -> String {
 
 /// The values of the plan's parameters for one light.
 pub(crate) fn values(request: &Request<'_>, settings: &PenumbraMap, light: &Light) -> Result<Values, TechniqueError> {
-    let mut values = Values::new();
-    receivers::values(request, &mut values);
-    light_buffers::values(request, light, &shading_samples(), &mut values)?;
-    let sampling = Sampling::new(request, &shading_samples(), 0, 1);
-    values.insert("sampling".into(), bytemuck::bytes_of(&sampling).to_vec());
+    let mut values = seen_values::values(request, light)?;
     shadow_views::values(request, settings.resolution, &mut values);
     light_silhouettes::values(HULL_CORNERS, &mut values);
     let record = PenumbraLight::new(request, light, settings.ramp);
@@ -179,10 +164,5 @@ pub(crate) fn values(request: &Request<'_>, settings: &PenumbraMap, light: &Ligh
     for layer in 0..6 {
         values.insert(layer_label(layer), bytemuck::bytes_of(&MapLayer::new(layer)).to_vec());
     }
-    shading::values(request, 1, &mut values);
     Ok(values)
-}
-
-fn shading_samples() -> LightSampling {
-    LightSampling::correlated(SamplePattern::Stratified, SHADING_SAMPLES, 0)
 }
